@@ -6,8 +6,10 @@ formulas     the textbook forms that the peers compute
 peaks        the best of 720 angles, for all peers
 blocks       blocks of points, for peers that take a matrix
 child        one contender in a process of its own
+rig          one call, or several in turns, timed
+accuracy/    `python -m benchmarks --accuracy`: every accuracy of desaxe beside the textbook's formula
 race         contenders in turns at a work
-errors       errors against the truth, by the rig of `desaxe.audit`
+errors       errors against the truth, by the rig of `accuracy/`
 load         bytes and operations of a work at each point
 measure      a whole run as plain data
 growth       time over the number of points

@@ -39,6 +39,10 @@ def main() -> None:
     options = _parser().parse_args()
     if options.list:
         print(_listed())
+    elif options.accuracy:
+        import_module(".accuracy.command", __package__).measure_accuracy(
+            options.quick, DOCS if options.write else None
+        )
     elif options.again:
         _write(json.loads(RESULTS.read_text(encoding="utf-8")))
     else:
@@ -61,6 +65,12 @@ def _parser() -> argparse.ArgumentParser:
         help=f"this work alone; repeatable; {STARTS}: desaxe's first calls and second processes; "
         f"{STEADY}: steady states beside simulating them; {LOADS}: loads that vary beside a constant force; "
         f"{INTEGRATORS}: simulations beside heyoka",
+    )
+    parser.add_argument(
+        "--accuracy",
+        action="store_true",
+        help="every accuracy of desaxe beside the textbook's formula in families of points where it loses "
+        "its digits; a minute or two, half a minute with --quick; --write writes docs/accuracy.md",
     )
     parser.add_argument(
         "--quick", action="store_true", help="five small works, few rounds, no cold starts: a minute"

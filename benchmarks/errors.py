@@ -5,12 +5,12 @@ The points are generic ones and ones next to a change point, at the speed that t
 
 from collections.abc import Iterable
 
-from desaxe.audit.contenders import INPUTS, NAMES, Run
-from desaxe.audit.contenders import Contender as Judged
-from desaxe.audit.errors import ULPS, Case, Judge, Statistics
 from desaxe.oracle.families import points
 from desaxe.oracle.truth import conditions, truth_all
 
+from .accuracy.contenders import INPUTS, NAMES, Run
+from .accuracy.contenders import Contender as Judged
+from .accuracy.errors import ULPS, Case, Judge, Statistics
 from .contenders import Contender
 from .race import Racer
 from .work import OMEGA0, PARAMETERS, Array, Inputs

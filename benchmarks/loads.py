@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 import desaxe as dx
-from desaxe.audit.rig import in_turns
+
+from .rig import in_turns
 
 DESIGNS, ANGLES = 512, 721
 ROUNDS = {"tolerance": 2, "optimize": 1}  # of those that take long; 9 of the others

@@ -10,9 +10,10 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import desaxe as dx
-from desaxe.audit.rig import timed
 from desaxe.simulation.checks import design_values, drive_of, model_of
 from desaxe.simulation.equations import Smooth
+
+from .rig import timed
 
 PRESS = {
     "AB": 0.14, "BC": 0.31, "m_crank": 0.7637, "m_rod": 1.559464, "I_crank": 80.6e-6, "I_rod": 166.8085e-6,

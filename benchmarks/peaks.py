@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 import desaxe as dx
-from desaxe.audit.rig import in_turns
 
 from .formulas import lambdified
+from .rig import in_turns
 from .work import Inputs
 
 DESIGNS, ANGLES, SPEED = 8_192, 720, 157.08

@@ -2,10 +2,9 @@
 
 from typing import TYPE_CHECKING
 
-from desaxe.audit.errors import Statistics
-from desaxe.audit.picture import COLOURS, draw
-from desaxe.audit.run import QUICK, Audit
-
+from .accuracy.errors import Statistics
+from .accuracy.picture import COLOURS, draw
+from .accuracy.run import QUICK, Audit
 from .contenders import BY_NAME, STANDARD
 from .errors import judged
 from .measure import Data

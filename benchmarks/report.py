@@ -3,9 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from desaxe.audit.errors import TOP, ULPS
-from desaxe.audit.report import number, table
-
+from .accuracy.errors import TOP, ULPS
+from .accuracy.report import number, table
 from .contenders import LIMITS, STANDARD
 from .load import DOUBLE
 from .measure import Data

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from desaxe.audit.rig import timed
+from .rig import timed
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "scale.md"
 NAMES = ["V_C", "a_C"]

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 import desaxe as dx
-from desaxe.audit.rig import timed
+
+from .rig import timed
 
 DESIGNS, SIMULATED, ROUNDS = 1000, 5, 3
 TURNS, AGREES, RTOL = 400, 1e-11, 1e-12

@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import desaxe as dx
-from desaxe.audit.rig import timed
+
+from .rig import timed
 
 TRUTH = 1e-13
 Designs = Mapping[str, Any]

@@ -25,7 +25,6 @@ COMMANDS = [
     "explore",
     "fit",
     "derive",
-    "audit",
     "doctor",
 ]
 

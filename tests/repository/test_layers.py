@@ -83,7 +83,6 @@ FLOORS = {
     "simulation": 7,
     "sweeps": 8,
     "design": 8,
-    "audit": 8,
     "scenes": 9,
     "machine": 10,
     "cli": 10,

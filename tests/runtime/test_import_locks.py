@@ -16,7 +16,7 @@ from tests.reliability.forks import FIRST_CALLS, START
 
 ROOT = Path(desaxe.__file__).parent
 # Rooms of a command's own process, which makes no threads that import.
-OF_COMMANDS = ("cli", "audit")
+OF_COMMANDS = ("cli",)
 GUARDS = ("IMPORTS", "needed(")
 BY_NAME = {"import_module", "__import__"}
 DEFINES_THE_LOCK = ROOT / "support" / "forks.py"

@@ -7,7 +7,7 @@ point    `desaxe point`
 scene    `desaxe run`, `scene`, `explain`, `compile`, `explore`
 sweep    `desaxe sweep`
 fit      `desaxe fit`
-checks   `desaxe derive`, `audit`, `doctor`
+checks   `desaxe derive`, `doctor`
 cache    `desaxe cache`: the folder of compiled kernels
 doctor   the report of `desaxe doctor`
 """

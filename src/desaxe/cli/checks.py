@@ -1,4 +1,4 @@
-"""`desaxe derive`, `audit`, `doctor`: the derivation, its accuracy, this installation."""
+"""`desaxe derive`, `doctor`: the derivation, this installation."""
 
 import argparse
 import io
@@ -58,22 +58,6 @@ def _own(words: list[str]) -> int:
         return 1 if found else 0
     print(f"wrote {printable(options.output)}")
     return 0
-
-
-def add_audit(commands: Any) -> None:
-    """Add `desaxe audit`."""
-    parser = add_command(commands, "audit", "time and error of every accuracy, measured here", _audit)
-    parser.add_argument("--quick", action="store_true", help="fewer points")
-    parser.add_argument(
-        "-o", metavar="FOLDER", dest="folder", help="write accuracy.md and accuracy.png there"
-    )
-    parser.add_argument("--overwrite", action="store_true", help="replace files that desaxe did not write")
-
-
-def _audit(options: argparse.Namespace) -> int:
-    from ..audit.command import command
-
-    return command(options.quick, options.folder, options.overwrite)
 
 
 def add_doctor(commands: Any) -> None:

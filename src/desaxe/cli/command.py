@@ -18,7 +18,7 @@ from ..support.extras import MissingExtraError, explained
 from ..support.interrupts import is_at_work
 from ..support.shown import printable
 from .cache import add_cache
-from .checks import add_audit, add_derive, add_doctor, derive
+from .checks import add_derive, add_doctor, derive
 from .fit import add_fit
 from .parser import SIGNS, Parser, Version
 from .point import add_point
@@ -44,7 +44,6 @@ COMMANDS = (
     add_explore,
     add_fit,
     add_derive,
-    add_audit,
     add_cache,
     add_doctor,
 )

@@ -1,4 +1,4 @@
-"""The timing rig of `desaxe audit` and of the benchmarks: one call, or several in turns."""
+"""The timing rig of the benchmarks: one call, or several in turns."""
 
 import random
 import time

@@ -1,21 +1,20 @@
-"""`desaxe audit`: a quick one has every row, tells the truth about standard, and writes its files."""
+"""`python -m benchmarks --accuracy`: every row, the truth about standard, its files."""
 
 import math
 import re
-import sys
 from itertools import islice
 
 import numpy as np
 import pytest
 
-from desaxe.audit import contenders as contenders_module
-from desaxe.audit.command import text, write
-from desaxe.audit.contenders import INPUTS, NAMES, contenders
-from desaxe.audit.errors import TOP, ULPS, Judge, Statistics, cases
-from desaxe.audit.report import beaten_by, measures, number, report, table
-from desaxe.audit.run import GENERIC, QUICK, Audit, audit
-from desaxe.audit.times import times
-from desaxe.cli import main
+from benchmarks.__main__ import main
+from benchmarks.accuracy import contenders as contenders_module
+from benchmarks.accuracy.command import text, write
+from benchmarks.accuracy.contenders import INPUTS, NAMES, contenders
+from benchmarks.accuracy.errors import TOP, ULPS, Judge, Statistics, cases
+from benchmarks.accuracy.report import beaten_by, measures, number, report, table
+from benchmarks.accuracy.run import GENERIC, QUICK, Audit, audit
+from benchmarks.accuracy.times import times
 from desaxe.oracle.families import FAMILIES, points
 
 ALWAYS = ("desaxe standard", "desaxe extended", "NumPy lambdify", "numba", "mpmath 50 digits")
@@ -83,28 +82,17 @@ def test_the_files_are_written(found, tmp_path):
     assert sorted(path.name for path in page.parent.iterdir()) == ["accuracy.md", "accuracy.png"]
 
 
-@pytest.mark.thorough
 def test_the_command(monkeypatch, capsys, tmp_path, found):
     asked = []
-    monkeypatch.setattr("desaxe.audit.command.audit", lambda effort, watch: asked.append(effort) or found)
-    assert main(["audit", "--quick", "-o", str(tmp_path)]) == 0
-    shown = capsys.readouterr().out
+    monkeypatch.setattr(
+        "benchmarks.accuracy.command.audit", lambda effort, watch: asked.append(effort) or found
+    )
+    monkeypatch.setattr("benchmarks.__main__.DOCS", tmp_path)
+    monkeypatch.setattr("sys.argv", ["benchmarks", "--accuracy", "--quick", "--write"])
+    main()
     assert asked == [QUICK]
-    assert shown.startswith(text(found))
+    assert capsys.readouterr().out.startswith(text(found))
     assert (tmp_path / "accuracy.png").is_file()
-
-
-@pytest.mark.parametrize(
-    ("module", "extra"), [("flint", "rigorous"), ("mpmath", "rigorous"), ("matplotlib.figure", "plot")]
-)
-def test_a_missing_extra_is_told(monkeypatch, capsys, module, extra):
-    for name in [name for name in sys.modules if name.startswith(("desaxe.audit", "desaxe.oracle"))]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, module, None)
-    assert main(["audit", "--quick", "-o", "nowhere"]) == 2
-    module = module.partition(".")[0]
-    remedy = f"python -m pip install 'desaxe[{extra}]'"
-    assert capsys.readouterr().err == f"desaxe: error: desaxe audit needs {module}: {remedy}\n"
 
 
 @pytest.mark.parametrize("family", FAMILIES)

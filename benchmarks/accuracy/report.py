@@ -2,9 +2,10 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
-from ..oracle.families import FAMILIES
-from ..support.template import file_text
-from ..support.text_table import table as text_table
+from desaxe.oracle.families import FAMILIES
+from desaxe.support.template import file_text
+from desaxe.support.text_table import table as text_table
+
 from .contenders import NAMES
 from .errors import TOP, ULPS, Statistics
 from .run import GENERIC, SEED, Audit
@@ -60,7 +61,8 @@ def _made(found: Audit) -> str:
     branches = "both branches" if len(effort.branches) > 1 else "branch +1"
     absent = "" if "heyoka" in found.ratios else " heyoka is not installed here, so it was not measured."
     return (
-        f"Made by `desaxe audit`: {', '.join(NAMES)} at {effort.points} points of each family, {branches},\n"
+        "Made by `python -m benchmarks --accuracy --write`: "
+        f"{', '.join(NAMES)} at {effort.points} points of each family, {branches},\n"
         f"seed {SEED}; time over {effort.timed} points, {effort.rounds} rounds. The truth is the loop\n"
         f"closure in ball arithmetic, which shares nothing with any contender. NumPy, numba, heyoka and\n"
         f"mpmath evaluate the textbook's closed form (`desaxe.equation`).{absent}\n\n"

@@ -13,8 +13,9 @@ from typing import Any, NamedTuple
 import mpmath
 import numpy as np
 
-from ..oracle.families import points
-from ..oracle.truth import conditions, truth_all, ulp_error
+from desaxe.oracle.families import points
+from desaxe.oracle.truth import conditions, truth_all, ulp_error
+
 from .contenders import INPUTS, NAMES, Array, Contender, Run
 
 ULPS = 8  # of the promise of standard

@@ -5,9 +5,10 @@ from functools import partial
 
 import numpy as np
 
-from ..oracle.families import points
+from desaxe.oracle.families import points
+
+from ..rig import in_turns
 from .contenders import INPUTS, NAMES, Array, Contender
-from .rig import in_turns
 
 DRAWN = 2000  # different points; they are repeated
 FEW = 20  # for those who are slow

@@ -2,7 +2,6 @@
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..support.extras import needed
 from .contenders import NAMES
 from .errors import TOP, ULPS
 from .report import beaten_by, measures
@@ -59,8 +58,8 @@ PANELS = (
 
 def draw(found: Audit) -> "Figure":
     """Three panels, one for each measure."""
-    with needed("the audit's picture"):
-        from matplotlib.figure import Figure
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=SIZE, layout="constrained")
     figure.suptitle(TITLE, fontsize=12)
     for panel, ax in zip(PANELS, figure.subplots(1, len(PANELS)), strict=True):

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.evaluate import evaluate
-from ..runtime.accuracy import ACCURACIES
+from desaxe.evaluation.evaluate import evaluate
+from desaxe.runtime.accuracy import ACCURACIES
 
 NAMES = ("V_C", "a_C", "a_C_wrt_ec")
 INPUTS = ("theta", "ec", "AB", "BC", "omega0", "alpha")

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import llvmlite.binding
 
-from ..oracle.families import FAMILIES
+from desaxe.oracle.families import FAMILIES
+
 from .contenders import Contender, contenders
 from .errors import Judge, Statistics, cases
 from .times import times

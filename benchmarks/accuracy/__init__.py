@@ -1,9 +1,8 @@
 """Accuracy and time of desaxe, measured against an independent reference.
 
-command     `desaxe audit`: measure, print, write the page
+command     `python -m benchmarks --accuracy`: measure, print, write the page
 run         the audit: times and errors, family by family
 contenders  every accuracy of desaxe, and other tools
-rig         one call, or several in turns, for audit and benchmarks
 times       time per point, alternating, on one core
 errors      errors against the oracle, in shares of the promise and in ulp
 report      the result as Markdown
