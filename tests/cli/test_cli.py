@@ -51,21 +51,6 @@ def test_point(told):
     assert told("point", "a_C", *(word.replace("=", " = ") for word in POINT)) == out
 
 
-def test_the_best_designs_are_in_the_units_of_the_scene(tmp_path, capsys):
-    text = """
-units = "mm, deg, rpm"
-outputs = ["a_C"]
-mechanism = { AB = 75, BC = [300, 310], ec = [0, 15, 280] }
-motion = { omega0 = 60, theta = { start = 0, stop = 360, num = 37 } }
-"""
-    (tmp_path / "press.toml").write_text(text, encoding="utf-8")
-    main(["sweep", f"{tmp_path}/press.toml", "--best", "1", "--by", "absmax:a_C", "--order", "smallest"])
-    head, _, row = capsys.readouterr().out.splitlines()
-    units = "AB [mm], omega0 [rpm], a_C_absmax [mm/s^2]"
-    assert ", ".join(re.findall(r"(?:AB|omega0|a_C_absmax) \S+", head)) == units
-    assert row.split()[1] == "75.0"
-
-
 def test_point_with_several_names(told):
     lines = told("point", "V_C,a_C", *POINT, "a_C_wrt_ec").splitlines()
     assert [line.split()[0] for line in lines] == ["V_C", "a_C", "a_C_wrt_ec"]

@@ -140,11 +140,9 @@ def slenderness():
     dx.undefine("slenderness")
 
 
-def test_what_is_made_of_them_is_ranked_mapped_optimised_and_toleranced(slenderness):
+def test_what_is_made_of_them_is_mapped_optimised_and_toleranced(slenderness):
     axes = {"ec": np.linspace(0.0, 0.02, 5), "AB": np.linspace(0.02, 0.04, 3)}
     wanted = dx.evaluate("stroke", ec=axes["ec"][:, None], AB=axes["AB"], BC=0.064) / 0.064
-    best = dx.sweep([], best=2, by=slenderness, order="largest", BC=0.064, **axes)
-    assert best[slenderness].values == pytest.approx(np.sort(wanted.ravel())[::-1][:2], rel=1e-14)
     chart = dx.design_map([slenderness], derivatives=True, BC=0.064, **axes)
     np.testing.assert_allclose(chart[slenderness], wanted, rtol=1e-14)
     slope = dx.evaluate("stroke_wrt_AB", ec=axes["ec"][:, None], AB=axes["AB"], BC=0.064) / 0.064

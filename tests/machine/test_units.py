@@ -421,15 +421,6 @@ def test_words_of_results_in_units():
     )
 
 
-def test_best_designs_are_in_units():
-    how = {"best": 1, "by": "a_C", "order": "largest"}
-    found = PRESS.sweep("a_C", theta=[0, 90, 180], ec=[0, 10, 160], BC=[200, 210], **how)
-    given = {**SI, "theta": [0.0, math.pi / 2, math.pi], "ec": [0.0, 0.01, 0.16], "BC": [0.2, 0.21]}
-    wanted = dx.sweep("a_C", **given, **how)
-    assert found.ec.values == pytest.approx(1e3 * wanted.ec.values)
-    assert found.ec.units == "mm"
-
-
 def test_a_text_without_a_unit_is_in_that_of_the_machine():
     written = dx.Machine(**{name: str(value) for name, value in PLAIN.items()}, units="mm, deg, rpm")
     assert dict(written) == dict(PRESS)

@@ -27,7 +27,6 @@ INPUTS = {
 KINDS = {
     "grid": {"names": ["V_C", "a_C"], "chunks": {"theta": 8}},
     "reduced": {"names": "a_C", "reduce": {"theta": "absmax"}, "peaks": ["a_C"]},
-    "best": {"names": "a_C", "best": 2, "by": "a_C", "order": "largest"},
 }
 
 

@@ -58,8 +58,6 @@ def test_the_command(tmp_path, capsys):
     assert "250 points, 11 variables" in shown.splitlines()[0]
     assert "free" in shown.splitlines()[0]
     assert (tmp_path / "one.nc").is_file()
-    assert main(["sweep", "press.toml", "--best", "2", "--by", "absmax:V_C", "--order", "largest"]) == 0
-    assert "V_C_absmax" in capsys.readouterr().out
     assert main(["sweep", "press.toml"]) == 2
     assert "where to?" in capsys.readouterr().err
 

@@ -17,7 +17,7 @@ INPUTS = {
     "theta": np.linspace(0.0, 6.0, 20), "ec": [-0.05, 0.9], "AB": 0.2, "BC": [0.1, 0.5], "omega0": 3.0,
 }  # fmt: skip
 GRID = {"names": ["V_C", "a_C"], "chunks": {"theta": 8}}
-BEST = {"names": "a_C", "best": 2, "by": "a_C", "order": "largest"}
+REDUCED = {"names": "a_C", "reduce": {"theta": "absmax"}, "peaks": "a_C"}
 
 
 def sweep(root, kind, **more):
@@ -27,7 +27,7 @@ def sweep(root, kind, **more):
 @pytest.fixture(scope="module")
 def stores(tmp_path_factory):
     found = {}
-    for name, kind in (("grid", GRID), ("best", BEST)):
+    for name, kind in (("grid", GRID), ("reduced", REDUCED)):
         found[name] = tmp_path_factory.mktemp("whole") / f"{name}.zarr", kind
         sweep(*found[name])
     return found
@@ -43,7 +43,7 @@ def with_attribute(whole, root, name, value):
 BAD = [None, "", "{", '{"theta": 8}', '{"theta": 0, "ec": 2}']
 
 
-@pytest.mark.parametrize("kind", ["grid", "best"])
+@pytest.mark.parametrize("kind", ["grid", "reduced"])
 @pytest.mark.parametrize("value", BAD)
 def test_chunks_that_are_none_are_refused_in_a_line(stores, kind, value, tmp_path):
     whole, kind = stores[kind]
@@ -68,14 +68,6 @@ def test_of_a_damaged_request_the_differences_are_told(stores, value, tmp_path):
         sweep(tmp_path / "press.zarr", kind)
 
 
-@pytest.mark.parametrize("value", [None, "", "[1]", '{"ec/c/0": 7}'])
-def test_damaged_digests_of_the_best_are_mended(stores, value, tmp_path):
-    whole, kind = stores["best"]
-    root = tmp_path / "press.zarr"
-    with_attribute(whole, root, "files", value)
-    assert sweep(root, kind).identical(sweep(whole, kind))
-
-
 def test_a_pipe_in_the_place_of_a_store_s_files_is_not_waited_for(stores, tmp_path):
     whole, kind = stores["grid"]
     for number, file in enumerate(("zarr.json", "a_C/zarr.json", "a_C/c/0/0/0", "theta/c/0")):
@@ -90,7 +82,7 @@ def test_a_pipe_in_the_place_of_a_store_s_files_is_not_waited_for(stores, tmp_pa
             assert sweep(root, kind).identical(sweep(whole, kind))
 
 
-@pytest.mark.parametrize("kind", ["grid", "best"])
+@pytest.mark.parametrize("kind", ["grid", "reduced"])
 def test_a_store_that_another_sweep_has_made_meanwhile(stores, kind, tmp_path, monkeypatch):
     whole, kind = stores[kind]
     root = tmp_path / "press.zarr"
@@ -105,7 +97,7 @@ def test_a_store_that_another_sweep_has_made_meanwhile(stores, kind, tmp_path, m
     assert os.listdir(tmp_path) == [root.name]
 
 
-@pytest.mark.parametrize("kind", ["grid", "best"])
+@pytest.mark.parametrize("kind", ["grid", "reduced"])
 @pytest.mark.parametrize("empty", [False, True])
 @pytest.mark.parametrize("looks", [1, 2])
 def test_a_store_that_appears_between_two_looks(stores, kind, empty, looks, tmp_path, monkeypatch):
@@ -132,11 +124,6 @@ def test_a_store_that_appears_between_two_looks(stores, kind, empty, looks, tmp_
     assert len(seen) >= looks
     assert told in ("True", f"{root}: another sweep is writing this store")
     assert os.listdir(tmp_path) == [root.name]
-
-
-def test_the_store_of_a_search_does_not_depend_on_the_order_of_its_writing(stores):
-    told = json.loads((stores["best"][0] / "zarr.json").read_text())["attributes"]["files"]
-    assert list(json.loads(told)) == sorted(json.loads(told))
 
 
 def test_nothing_is_written_after_an_error(tmp_path, monkeypatch):

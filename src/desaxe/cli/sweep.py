@@ -25,9 +25,6 @@ def add_sweep(commands: Any) -> None:
         "--overwrite", action="store_true", help="replace a store of another sweep, or a file"
     )
     parser.add_argument("--netcdf", metavar="FILE", help="write it as NetCDF too, if it fits into memory")
-    parser.add_argument("--best", metavar="K", type=int, help="the best K designs instead of the grid")
-    parser.add_argument("--by", metavar="NAME", help="criterion of --best: a_C, or absmax:a_C")
-    parser.add_argument("--order", choices=("smallest", "largest"), help="which end of --by is the best")
     where = parser.add_mutually_exclusive_group()
     where.add_argument("--workers", metavar="N", type=int, help="processes on this machine")
     where.add_argument("--scheduler", metavar="ADDRESS", help="address of a Dask scheduler")
@@ -35,40 +32,23 @@ def add_sweep(commands: Any) -> None:
 
 def _sweep(options: argparse.Namespace) -> int:
     from ..scenes.scene import scene
-    from ..sweeps.sweep import NotStoredError
     from ..sweeps.tasks import VersionError
 
     wanted = scene(options.scene)
-    if options.store is None and wanted.content.store is None and options.best is None:
+    if options.store is None and wanted.content.store is None:
         raise UsageError("where to? give -o STORE.zarr, or [results] store in the scene")
     if options.netcdf is not None:
         _require_netcdf(options.netcdf, options.overwrite)
     try:
         found = _swept(wanted.content, options)
-    except NotStoredError as error:
-        print(error.result.to_dataframe().to_string(), flush=True)
-        raise
     except VersionError as error:
         raise UsageError(str(error)) from None
-    if options.best is not None:
-        print(_best_of(found, wanted.shown_in))
-    place = options.store or (wanted.content.store if options.best is None else None)
-    if place is not None:
-        shape = " x ".join(f"{name} ({size})" for name, size in found.sizes.items())
-        print(f"{printable(place)}: {', '.join(map(str, found.data_vars))} over {shape or 'one point'}")
+    shape = " x ".join(f"{name} ({size})" for name, size in found.sizes.items())
+    place = printable(options.store or wanted.content.store)
+    print(f"{place}: {', '.join(map(str, found.data_vars))} over {shape or 'one point'}")
     if options.netcdf is not None:
         _write_netcdf(found, options.netcdf, options.overwrite)
     return 0
-
-
-def _best_of(found: Any, units: Any) -> str:
-    """The best designs as text, in the units of the scene."""
-    from ..evaluation.in_units import in_units
-    from ..scenes.stores.tables import heading
-
-    table = in_units(found, units)
-    headings = {n: heading(str(n), v.attrs.get("units", "1")) for n, v in table.variables.items()}
-    return str(table.to_dataframe().rename(columns=headings).to_string())
 
 
 def _swept(content: Any, options: argparse.Namespace) -> Any:
@@ -84,9 +64,6 @@ def _swept(content: Any, options: argparse.Namespace) -> Any:
             memory=options.memory,
             overwrite=options.overwrite,
             client=client,
-            best=options.best,
-            by=_by(options.by),
-            order=options.order,
         )
 
 
@@ -101,12 +78,6 @@ def _chunks(text: str | None) -> Any:
         return {name.strip(): "auto" if value == "auto" else int(value) for name, value in pairs}
     except ValueError:
         raise UsageError(f"--chunks {text}: auto, a number, or pairs such as theta=1000,ec=10") from None
-
-
-def _by(text: str | None) -> Any:
-    """`a_C`, or `absmax:a_C`."""
-    kind, colon, name = (text or "").partition(":")
-    return (kind, name) if colon else text
 
 
 @contextmanager

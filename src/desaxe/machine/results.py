@@ -31,7 +31,7 @@ def shown(found: Any, machine: Any, named: Mapping[str, Any], show: Shown) -> An
 
 
 def _as_given(found: Any, call: Mapping[str, Any]) -> dict[str, Any]:
-    """The coordinates that were given as plain numbers; of the best designs they are others."""
+    """The coordinates that were given as plain numbers."""
     kept = {key: value for key, value in call.items() if key in found.coords and _is_plain(value)}
     return {
         key: value

@@ -87,7 +87,6 @@ class Content(NamedTuple):
     chunks: Any = None
     memory: int | None = None
     definitions: tuple[Definition, ...] = ()
-    order: str | None = None
     steady: OnMotor | None = None
 
     @property

@@ -42,7 +42,6 @@ Chunks = Annotated[
     Meta(description='"auto", a number of points, or a table such as { theta = 1000 }'),
 ]
 Memory = Annotated[int | str, Meta(description='text such as "200 MB", or a number of bytes')]
-Order = Annotated[Literal["smallest", "largest"], Meta(description='"smallest" or "largest"')]
 Number = Annotated[float | str, Meta(description=_NUMBER)]
 Count = Annotated[int, Meta(ge=1, description="a whole number, at least 1")]
 Points = Annotated[int, Meta(ge=2, description="a whole number, at least 2")]
@@ -263,14 +262,13 @@ class Results(SceneSection, frozen=True):
     """`[results]`: where the labelled values go: .nc (NetCDF), .zarr, .csv, .xlsx or .npz (NumPy).
 
     With `store`, a folder such as "press.zarr", they are swept into it chunk by chunk and need not fit
-    into memory. `order` is which end is the best where the best designs are swept for.
+    into memory.
     """
 
     data: File | None = None
     store: Store | None = None
     chunks: Chunks | None = None
     memory: Memory | None = None
-    order: Order | None = None
 
 
 class QuantityTable(SceneSection, frozen=True):

@@ -31,29 +31,19 @@ def sweep(
     threads: int | None = None,
     reduce: Mapping[str, str | Sequence[str]] | None = None,
     peaks: Any = (),
-    best: int | None = None,
-    by: Any = None,
-    order: str | None = None,
     progress: Progress | None = None,
     **inputs: Any,
 ) -> "xr.Dataset":
     """A grid of any size, written chunk by chunk to a Zarr store; the opened Dataset, which is lazy.
 
     names      one or more, or a scene, or the path of one ("press.toml"): its outputs, inputs, [reduce],
-               [[peak]] and [results] store, chunks, memory and order
+               [[peak]] and [results] store, chunks and memory
     inputs, reduce  as in `grid`; `status` and `margin` come always (`margin` alone with `reduce`)
     peaks      refined peaks of each design beside the grid: a name, several, or a dict name -> "absmax",
                "max", "min" or several of these; `peak_absmax_a_C`, with its angle, status and gradient
                (`peak_absmax_a_C_theta`, `..._status`, `..._wrt_ec`); `names` may be empty then
-    best, by, order  instead of a grid the `best` designs by a quantity: `by="a_C"` is its largest value,
-               ("min", "a_C") its smallest, ("absmax", "a_C") its largest magnitude, ("rms", "a_C") or
-               another kind of `reduce`, of each design over theta where that is an axis. `order` is which
-               end is the best, "smallest" or "largest"; it must be given but for min ("smallest"), mean and
-               median ("largest"). The Dataset has for each `rank` the value, the design, the
-               angle at which it is attained, every name there, and `feasible_fraction`, the share of
-               the angles that have a value; `feasible` is that share of the whole grid
     store      the folder of the store, such as "press.zarr"; `xarray.open_zarr` reads it. What is
-               reduced, and peaks and best designs alone, may do without: the Dataset is in memory then
+               reduced, and peaks alone, may do without: the Dataset is in memory then
     chunks     as in xarray: a dict, a number or "auto" (16 MiB a variable at most, the last dimensions
                whole); dimensions not named are whole
     memory     bytes, or text such as "200 MB", that the chunks in flight may take (256 MB without);
@@ -79,8 +69,8 @@ def sweep(
     See docs/choose.md: which call for which question.
     """
     options: dict[str, Any] = {
-        "store": store, "memory": memory, "overwrite": overwrite, "client": client, "best": best, "by": by,
-        "order": order, "watch": progress,
+        "store": store, "memory": memory, "overwrite": overwrite, "client": client,
+        "watch": progress,
         "tell": _tell if progress is None and sys.stderr.isatty() else None,
     }  # fmt: skip
     if isinstance(names, (Scene, Mapping, PathLike)) or (isinstance(names, str) and names.endswith(".toml")):

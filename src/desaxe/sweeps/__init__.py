@@ -10,8 +10,5 @@ layout    chunks and the memory that they take
 skeleton  metadata and coordinates of a store: what they must be, and what they are
 store     the store: its skeleton, chunks that are whole or absent, what is left to do
 tasks     a chunk as a task that travels to a worker, and where its arrays go: a store, memory
-ranking   another place where they go: the best designs of each chunk, and how two of these merge
 cluster   tasks in threads or on a Dask cluster, a bounded number at a time
-best      a search for the best designs: what it asks for, and its result
-kept      the state of such a search on disk
 """

@@ -14,7 +14,7 @@ from ..support.files import require_writable
 from ..support.shown import printable
 from .layout import size_text
 from .request import IDENTITY, Sweep, differences
-from .skeleton import INCOMPLETE, STATE, Compared, as_signed, compared, skeleton_of
+from .skeleton import INCOMPLETE, STATE, Compared, compared, skeleton_of
 from .store import HELD, attributes, create, held, put, remove_strays
 
 if TYPE_CHECKING:
@@ -64,9 +64,8 @@ def require_place(sweep: Sweep, root: Path, overwrite: bool, memory: int | None)
         )
     if kept is not None and not changed:
         return kept
-    if sweep.ranking is None:
-        sweep.layout.require_memory(memory)
-        require_room(sweep, root, sweep.plan.bytes)
+    sweep.layout.require_memory(memory)
+    require_room(sweep, root, sweep.plan.bytes)
     return None
 
 
@@ -79,8 +78,8 @@ def _changes(root: Path, changes: Callable[[], list[str]]) -> list[str]:
 
 
 def _changed(sweep: Sweep, root: Path) -> list[str]:
-    """The changes of a store since its sweep wrote it; that of a search is signed, with what it found."""
-    return _compared(sweep, root).changed if sweep.ranking is None else as_signed(root)[1]
+    """The changes of a store since its sweep wrote it."""
+    return _compared(sweep, root).changed
 
 
 def _compared(sweep: Sweep, root: Path) -> Compared:
@@ -97,7 +96,7 @@ def placed(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Swe
     """Create the store, or check that the existing one is of this sweep; return the sweep with its chunks."""
     kept = require_place(sweep, root, overwrite, memory)
     if kept is not None:
-        lost = _compared(kept, root).lost if kept.ranking is None else {}
+        lost = _compared(kept, root).lost
         with held(root) if lost else nullcontext():
             put(root, lost)
         return kept

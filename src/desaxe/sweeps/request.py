@@ -17,7 +17,6 @@ from ..runtime.request import several
 from ..support.version import version as desaxe_version
 from .layout import Layout, layout_of, table_of
 from .peak_step import PeakRequest, PeakStep, peak_requests, peak_steps
-from .ranking import Ranking
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,18 +43,14 @@ class Sweep(NamedTuple):
 
     plan      what it computes
     layout    its dimensions and chunks
-    template  its Dataset with lazy variables, for names, dimensions and attributes; of a search it is empty
+    template  its Dataset with lazy variables, for names, dimensions and attributes
     identity  the attributes that tell whether a store is of the same sweep
-    ranking   what designs are ranked by, where the best are searched
-    others    the names that they have beside it
     """
 
     plan: Plan
     layout: Layout
     template: "xr.Dataset"
     identity: dict[str, str]
-    ranking: Ranking | None = None
-    others: tuple[str, ...] = ()
 
     def blocks(self) -> Iterator[Block]:
         """The chunks of the sweep, with what is computed in each."""
@@ -116,22 +111,12 @@ def _require_names_apart(peaks: Sequence[PeakStep]) -> None:
             known[name] = step.quantity
 
 
-def identity(
-    plan: Plan,
-    accuracy: str,
-    peaks: Sequence[PeakRequest] = (),
-    best: tuple[int, str, str, str] | None = None,
-    names: Sequence[str] | None = None,
-) -> dict[str, str]:
-    """The attributes that a store of this plan has: no time, path or host is among them.
-
-    `best` tells how many designs are searched, by which quantity and kind, and which end is the best;
-    `names` are all that are asked for, where the plan has fewer.
-    """
-    outer, names = plan.outer, plan.outer.names if names is None else names
+def identity(plan: Plan, accuracy: str, peaks: Sequence[PeakRequest] = ()) -> dict[str, str]:
+    """The attributes that a store of this plan has: no time, path or host is among them."""
+    outer = plan.outer
     texts = [repr(step.own) for step in plan.all if step.own]
     request = {
-        "names": list(names),
+        "names": list(outer.names),
         "reduce": {} if plan.reductions is None else plan.reductions.plain(),
         "peaks": [list(one) for one in peaks],
         "definitions": [hashlib.sha256(text.encode()).hexdigest() for text in texts],
@@ -140,9 +125,7 @@ def identity(
         "inputs": {name: _input(array) for name, array in outer.axes.items()}
         | {name: {"load": load.told(), "sha256": load.identity} for name, load in outer.loads.items()},
     }
-    if best is not None:
-        request["best"], request["by"], request["order"] = best[0], list(best[1:3]), best[3]
-    own = text_of(names)
+    own = text_of(outer.names)
     if own:
         request["quantities"] = json.loads(own)
     version, program = versions()

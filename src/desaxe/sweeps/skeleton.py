@@ -15,7 +15,6 @@ import numpy as np
 
 from ..support.extras import explained
 from ..support.signals import put_off
-from .layout import table_of
 
 with put_off(), explained("a sweep"):
     import zarr
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
 METADATA = "zarr.json"
 STATE = "state"  # an attribute: whether the store is complete
 INCOMPLETE, COMPLETE = "incomplete", "complete"
-FILES = "files"  # an attribute of a store that was written at once: the digests of its files
 LEVEL = 1  # of zstd: doubles hardly shrink, and this is the fastest
 CONSOLIDATED = "Consolidated metadata is currently not part"  # of the format, a warning says
 UNREADABLE = (ValueError, RuntimeError, OSError, KeyError, TypeError)
@@ -65,29 +63,6 @@ def skeleton_of(template: "xr.Dataset", chunk: Mapping[str, int]) -> dict[str, b
     arrays = group["consolidated_metadata"]["metadata"]  # in an order that depends on the process
     group["consolidated_metadata"]["metadata"] = {name: arrays[name] for name in encoding}
     return {METADATA: as_json(group)} | {place: data.to_bytes() for place, data in files.items()}
-
-
-def signed(files: Mapping[str, bytes]) -> dict[str, bytes]:
-    """The files of a whole store, with their digests as an attribute."""
-    group = json.loads(files[METADATA])
-    told = {place: _digest(files[place]) for place in sorted(files) if place != METADATA}
-    group["attributes"][FILES] = json.dumps(told)
-    return {**files, METADATA: as_json(group)}
-
-
-def as_signed(root: Path) -> tuple[bool, list[str]]:
-    """True if a signed store has all its files, and the metadata that have changed since."""
-    group = _facts((root / METADATA).read_bytes()) or {}
-    digests = table_of(group.get(f"attributes.{FILES}"))
-    whole, changed = bool(digests), []
-    for place, digest in digests.items():
-        data = _bytes(root / place)
-        facts = _facts(data) if place.endswith(METADATA) else None
-        as_written = data is not None and _digest(data) == digest
-        if facts is not None and not (as_written and group.get(place.partition("/")[0]) == facts):
-            changed.append(f"{place} is not as it was written")
-        whole = whole and (as_written or facts is not None)
-    return whole, changed
 
 
 def with_state(metadata: bytes, state: str) -> bytes:

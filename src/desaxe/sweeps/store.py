@@ -26,7 +26,7 @@ from ..support.forks import IMPORTS
 from ..support.locks import locked
 from ..support.shown import printable
 from ..support.signals import put_off
-from .skeleton import COMPLETE, METADATA, STATE, signed, skeleton_of, with_state
+from .skeleton import METADATA, STATE, with_state
 
 with put_off(), explained("a sweep"):
     import zarr
@@ -119,12 +119,6 @@ def put(root: Path, files: Mapping[str, bytes]) -> None:
     """Write files of a store by their places."""
     for place, data in files.items():
         write_durably(root / place, data)
-
-
-def write_whole(root: Path, dataset: "xr.Dataset") -> None:
-    """Replace a store by a Dataset in memory, as one that is complete."""
-    sizes = {str(name): max(1, size) for name, size in dataset.sizes.items()}
-    create(root, signed(skeleton_of(dataset.assign_attrs({STATE: COMPLETE}), sizes)), True)
 
 
 def attributes(root: Path) -> dict[str, Any] | None:

@@ -1,8 +1,8 @@
 """A grid of any size, written chunk by chunk to a Zarr store in bounded memory; resumable."""
 
 import os
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, closing, contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from importlib import import_module
 from os import PathLike
 from pathlib import Path
@@ -15,17 +15,14 @@ from ..support.extras import needed
 from ..support.files import as_path
 from ..support.progress import Count, Portions, Progress, progress_bar
 from ..support.shown import printable
-from . import store as zarr_store
-from .best import designs_of, search_of
 from .cluster import Crew, cluster, require_workers, run_all
 from .cluster import threads as thread_crew
 from .estimate import CHUNK, announcement, seconds_of
-from .kept import Kept
 from .layout import Layout, bytes_of
-from .place import CHUNKS, clear, free_at, placed, require_room
+from .place import clear, free_at, placed, require_room
 from .request import Sweep, SweepRequest, sweep_of
-from .skeleton import COMPLETE, STATE, as_signed
-from .store import attributes, held, open_store, remove_strays, set_state, sync_folders
+from .skeleton import COMPLETE
+from .store import held, open_store, remove_strays, set_state, sync_folders
 from .tasks import Done, InMemory, Sink, Stored, Task, is_absent, run
 
 if TYPE_CHECKING:
@@ -50,10 +47,7 @@ def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way:
     sweep = placed(sweep, root, overwrite, way.memory)
     with held(root), _resumable(sweep, root):
         clear(root)
-        if sweep.ranking is None:
-            _fill(sweep, root, way)
-        else:
-            _fill_by_rank(sweep, root, way)
+        _fill(sweep, root, way)
     return open_store(root)
 
 
@@ -64,8 +58,8 @@ def _resumable(sweep: Sweep, root: Path) -> Iterator[None]:
         yield
     except KeyboardInterrupt as stopped:
         total = sweep.layout.chunks
-        kept = total - _absent(sweep, root) if sweep.ranking is None else int(Kept(total, root).done.sum())
-        words = f"{kept:,} of {total:,} chunks are kept; the same sweep goes on from there"
+        kept = f"{total - _absent(sweep, root):,} of {total:,} chunks are kept"
+        words = f"{kept}; the same sweep goes on from there"
         stopped.args = (f"{printable(root)}: {words}",)
         raise
 
@@ -84,18 +78,6 @@ def _fill(sweep: Sweep, root: Path, way: RunOptions) -> None:
     remove_strays(root)  # of workers that were killed
     sync_folders(root)
     set_state(root, COMPLETE)
-
-
-def _fill_by_rank(search: Sweep, root: Path, way: RunOptions) -> None:
-    """Search for the best designs, or go on with that, unless a store has them."""
-    there = attributes(root) or {}
-    if there.get(STATE) == COMPLETE and as_signed(root)[0]:
-        return
-    found = searched(search, way, root)
-    try:
-        zarr_store.write_whole(root, found.assign_attrs({CHUNKS: there[CHUNKS]}))
-    except OSError as error:
-        raise NotStoredError(root, error, found) from error
 
 
 def _announcement(sweep: Sweep, root: Path, cores: int) -> str:
@@ -140,16 +122,10 @@ def _ahead(crew: Crew) -> int:
     return crew.size if crew.size > 1 else 0
 
 
-def _done(
-    sweep: Sweep, sink: Sink, crew: Crew, way: RunOptions, count: Count, before: Container[int] = ()
-) -> Iterator[Done]:
-    """The chunks of a sweep as they are done, counted; those of `before` are not done again."""
+def _done(sweep: Sweep, sink: Sink, crew: Crew, way: RunOptions, count: Count) -> Iterator[Done]:
+    """The chunks of a sweep as they are done, counted."""
     versions, inner = (sweep.identity["version"], sweep.identity["digest"]), _inner(crew, way)
-    tasks = (
-        Task(number, sink, block, sweep.plan.points_in(block), inner, *versions)
-        for number, block in enumerate(sweep.blocks())
-        if number not in before
-    )
+    tasks = (Task(sink, block, sweep.plan.points_in(block), inner, *versions) for block in sweep.blocks())
     for done in run_all(crew, run, tasks, ahead=_ahead(crew)):
         count(done.points, done.computed)
         yield done
@@ -165,27 +141,6 @@ def swept(sweep: Sweep, way: RunOptions) -> "xr.Dataset":
                 for name, values in found.items():
                     arrays[name][region] = values
     return sweep.template.assign({n: sweep.template[n].copy(data=a) for n, a in arrays.items()})
-
-
-def searched(search: Sweep, way: RunOptions, root: Path | None = None) -> "xr.Dataset":
-    """The best designs, the best first; a search that was stopped goes on from the chunks that are kept."""
-    ranking, kept = search.ranking, Kept(search.layout.chunks, root)
-    assert ranking is not None
-    with _counted(search.plan.points, way.watch) as count, _crew(search.layout, way) as crew:
-        count(kept.points, False)
-        with closing(kept):
-            for done in _done(search, ranking, crew, way, count, set(np.flatnonzero(kept.done))):
-                kept.add(done.number, ranking.combine(kept.best, *done.found))
-    assert kept.best is not None
-    return designs_of(search, kept.best)
-
-
-class NotStoredError(OSError):
-    """The best designs were found and could not be stored; `result` has them."""
-
-    def __init__(self, root: Path, error: OSError, result: "xr.Dataset") -> None:
-        super().__init__(f"{printable(root)}: not written: {error.strerror or error}")
-        self.result = result
 
 
 def _absent_bytes(sweep: Sweep, root: Path) -> int:
@@ -212,9 +167,6 @@ def run_sweep(
     threads: int | None,
     reduce: Any,
     peaks: Any,
-    best: int | None = None,
-    by: Any = None,
-    order: str | None = None,
     watch: Progress | None = None,
     tell: Tell | None = None,
 ) -> "xr.Dataset":
@@ -225,27 +177,11 @@ def run_sweep(
         require_workers(client)
     way = RunOptions(room, client, threads, watch, tell)
     asked = SweepRequest(names, inputs, branch, accuracy, threads, reduce, peaks, chunks, room)
-    if best is not None or by is not None:
-        count = _count(best, by)
-        if peaks:
-            raise TypeError("best= and peaks=: give one of them")
-        search = search_of(asked, by, count, order)
-        return searched(search, way) if store is None else stored_sweep(search, store, overwrite, way)
-    if order is not None:
-        raise TypeError("order= belongs to best= and by=: which end of what they are ranked by is the best")
     store = store if store is None else as_path("store", store)
     if store is None and reduce is None and (names or not peaks):
         raise TypeError('sweep: store= is missing: where the grid goes, such as "press.zarr"')
     made = sweep_of(asked)
     return swept(made, way) if store is None else stored_sweep(made, store, overwrite, way)
-
-
-def _count(best: Any, by: Any) -> int:
-    if best is None or by is None:
-        raise TypeError('best= and by= belong together: how many designs, by what, such as best=10, by="a_C"')
-    if isinstance(best, bool) or not hasattr(best, "__index__") or int(best) < 1:
-        raise ValueError(f"best = {best!r}: a whole number, at least 1")
-    return int(best)
 
 
 def _require_scale() -> None:

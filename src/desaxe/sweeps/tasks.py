@@ -15,12 +15,12 @@ Array = NDArray[Any]
 
 
 class Sink(Protocol):
-    """A place for the arrays of a sweep: a store, the memory of the caller, a ranking. It travels."""
+    """A place for the arrays of a sweep: a store, or the memory of the caller. It travels."""
 
     def left(self, part: Part) -> list[str]:
         """The outputs of a part that are to be computed."""
 
-    def take(self, block: Block, part: Part, arrays: dict[str, Array], points: int) -> Any:
+    def take(self, part: Part, arrays: dict[str, Array]) -> Any:
         """Take the outputs; what this returns goes back to the caller."""
 
 
@@ -34,7 +34,7 @@ class Stored(NamedTuple):
         root = Path(self.root)
         return [n for n in part.step.outputs if not is_whole(root, n, part.place, part.region)]
 
-    def take(self, block: Block, part: Part, arrays: dict[str, Array], points: int) -> None:
+    def take(self, part: Part, arrays: dict[str, Array]) -> None:
         """Write the chunks."""
         for name in list(arrays):
             write_chunk(Path(self.root), name, part.region, arrays.pop(name))
@@ -47,15 +47,14 @@ class InMemory(NamedTuple):
         """The outputs of a part, all of them."""
         return list(part.step.outputs)
 
-    def take(self, block: Block, part: Part, arrays: dict[str, Array], points: int) -> Any:
+    def take(self, part: Part, arrays: dict[str, Array]) -> Any:
         """Hand the arrays back."""
         return part.region, arrays
 
 
 class Task(NamedTuple):
-    """A chunk: its number, its parts and the values that they need, and where its arrays go."""
+    """A chunk: its parts and the values that they need, and where its arrays go."""
 
-    number: int
     sink: Sink
     block: Block
     points: int
@@ -80,7 +79,6 @@ def check_version(version: str, program: str) -> None:
 class Done(NamedTuple):
     """A chunk that is done: its points, whether anything had to be computed, what its sink gave back."""
 
-    number: int
     points: int
     computed: bool
     found: list[Any]
@@ -95,8 +93,8 @@ def run(task: Task) -> Done:
         if left:
             arrays = computed(part.step, task.block.values, task.threads)
             arrays = {name: arrays.pop(name) for name in left}
-            found.append(task.sink.take(task.block, part, arrays, task.points))
-    return Done(task.number, task.points, bool(found), found)
+            found.append(task.sink.take(part, arrays))
+    return Done(task.points, bool(found), found)
 
 
 def is_absent(root: Path, parts: Sequence[Part]) -> bool:

@@ -55,11 +55,6 @@ def sweep_content(content: Content, **options: Any) -> "xr.Dataset":
     with IMPORTS:
         from ...sweeps.sweep import run_sweep
 
-    asked = request_of(content)._asdict()
-    whole = options.get("best") is None
-    own = {"store": content.store if whole else None, "order": None if whole else content.order}
     auto = isinstance(options.get("chunks"), str) and options["chunks"] == "auto"
     given = {n: v for n, v in options.items() if v is not None and not (auto and n == "chunks")}
-    if not whole:
-        asked["peaks"] = ()
-    return run_sweep(**{**asked, **own, **given})
+    return run_sweep(**{**request_of(content)._asdict(), "store": content.store, **given})

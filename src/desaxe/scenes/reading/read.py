@@ -111,7 +111,7 @@ def _content(
         file.title, outputs, _accuracy(file.accuracy), branch, inputs,
         tuple(checks), tuple(peaks), tuple(pictures), file.results.data,
         _reduction(file, outputs, inputs, units), file.threads, units, *_storage(file, outputs, inputs), own,
-        file.results.order, motor,
+        motor,
     )  # fmt: skip
 
 
