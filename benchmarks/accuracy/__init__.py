@@ -7,4 +7,5 @@ times       time per point, alternating, on one core
 errors      errors against the oracle, in shares of the promise and in ulp
 report      the result as Markdown
 picture     the result as a picture
+freeze      the truths that `desaxe doctor --accuracy` compares with
 """

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.cli import cache, command, doctor, main
+from benchmarks.accuracy import freeze
+from desaxe.cli import accuracy, cache, command, doctor, main
 from desaxe.mechanism.inputs import INPUTS
 
 COMPACTOR = str(Path(__file__).parents[2] / "examples" / "compactor.toml")
@@ -380,7 +381,7 @@ def test_doctor(capsys):
     out = capsys.readouterr().out
     assert f"place        {Path(dx.__file__).parent}\n" in out
     assert max(len(line) for line in out.splitlines() if "/" not in line) <= 100
-    for word in ("numba", "llvmlite", "xarray", "folder", "threads", "freshness", "vectorised", "sin, cos"):
+    for word in ("numba", "llvmlite", "xarray", "folder", "threads", "freshness", "arrays"):
         assert f"\n  {word} " in out
     assert out.endswith("desaxe can be used.\n")
 
@@ -394,40 +395,33 @@ def test_doctor_where_something_is_missing(monkeypatch):
         return real(name)
 
     monkeypatch.setattr(doctor, "version", version)
-    monkeypatch.setattr(doctor, "_assembly", lambda: iter([""]))
     found = doctor.examine()
     assert "missing: python -m pip install 'desaxe[units]'" in found.text
     assert not found.usable
 
 
 def test_doctor_where_nothing_compiles(monkeypatch):
-    def broken():
+    def broken(*args, **inputs):
         raise RuntimeError("no LLVM")
 
-    monkeypatch.setattr(doctor, "_assembly", broken)
+    monkeypatch.setattr(doctor, "evaluate", broken)
     found = doctor.examine()
-    assert "compilation  FAILED: RuntimeError: no LLVM" in found.text
+    assert "arrays       FAILED: RuntimeError: no LLVM" in found.text
     assert not found.usable
 
 
-@pytest.mark.parametrize(
-    ("assembly", "found"),
-    {
-        "\tvmulpd\t%zmm1, %zmm2, %zmm3\n\tvmulsd\t%xmm1, %xmm2, %xmm3\n": (8, ()),
-        "\tvfmadd231pd\t(%rax), %ymm2, %ymm3\n": (4, ()),
-        "\tmulpd\t%xmm2, %xmm3\n": (2, ()),
-        "\tfmul\tv0.2d, v1.2d, v2.2d\n\tbl\tsincos\n": (2, ("sincos",)),
-        "\tvmulsd\t%xmm1, %xmm2, %xmm3\n\tmovabsq\t$sincos, %rax\n": (1, ("sincos",)),
-        "\tfmul\td0, d1, d2\n\tbl\t_sin\n\tbl\t_cos\n": (1, ("cos", "sin")),
-        '\tmovabsq\t$".const.missing", %rsi\n': (1, ()),
-    }.items(),
-)
-def test_doctor_reads_machine_code(assembly, found):
-    doubles, calls = found
-    loop = doctor.examine_assembly(assembly)
-    assert loop.doubles == doubles
-    assert loop.library_calls == calls
-    assert loop.vectorised is (doubles > 1)
+def test_doctor_compares_with_the_truth(monkeypatch):
+    found = doctor.examine(accuracy=True)
+    assert found.usable
+    assert found.text.count("200 frozen truths: 0.1 of the promised error at most") == 2
+    wrong = [*accuracy.truths()]
+    wrong[7] = wrong[7]._replace(value=wrong[7].value * (1 + 2.0**-40))
+    monkeypatch.setattr(accuracy, "truths", lambda: wrong)
+    assert not doctor.examine(accuracy=True).usable
+
+
+def test_frozen_truths_are_fresh():
+    assert freeze.TABLE.read_text(encoding="utf-8") == freeze.text(), freeze.__doc__
 
 
 def test_the_cache_is_listed_without_its_locks(tmp_path, capsys):

@@ -18,7 +18,6 @@ RUNS_TEXT = {
     "src/desaxe/runtime/native/native_calls.py",
     "src/desaxe/peaks/by_arrays.py",
     "src/desaxe/peaks/compiled.py",
-    "src/desaxe/cli/doctor.py",
     "src/desaxe/compiler/languages/arrays.py",
     "src/desaxe/compiler/languages/python.py",
 }

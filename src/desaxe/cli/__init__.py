@@ -10,6 +10,7 @@ fit      `desaxe fit`
 checks   `desaxe derive`, `doctor`
 cache    `desaxe cache`: the folder of compiled kernels
 doctor   the report of `desaxe doctor`
+accuracy values beside frozen truths: `desaxe doctor --accuracy`
 """
 
 from .command import main as main

@@ -62,17 +62,14 @@ def _own(words: list[str]) -> int:
 
 def add_doctor(commands: Any) -> None:
     """Add `desaxe doctor`."""
-    add_command(
-        commands,
-        "doctor",
-        "versions, cache, threads, and whether loops vectorise on this CPU",
-        _doctor,
-    )
+    what = "versions, cache, threads, and whether arrays and points agree on this computer"
+    parser = add_command(commands, "doctor", what, _doctor)
+    parser.add_argument("--accuracy", action="store_true", help="compare with 200 frozen truths")
 
 
-def _doctor(_: argparse.Namespace) -> int:
+def _doctor(options: argparse.Namespace) -> int:
     from .doctor import examine
 
-    found = examine()
+    found = examine(options.accuracy)
     print(found.text)
     return 0 if found.usable else 1

@@ -1,17 +1,17 @@
-"""`desaxe doctor`: what is installed, where kernels are kept, and whether loops vectorise on this CPU."""
+"""`desaxe doctor`: what is installed, where kernels are kept, and whether arrays and points agree here."""
 
 import platform
-import re
 import sys
 import time
-from collections.abc import Iterator
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..evaluation.evaluate import evaluate
 from ..support.extras import EXTRAS
+from .accuracy import worst_shares
 
 RUNTIME = ("numpy", "numba", "llvmlite")
 OPTIONAL = (
@@ -19,22 +19,6 @@ OPTIONAL = (
     "msgspec", "tqdm", "scipy", "SALib", "plotly", "python-flint",
 )  # fmt: skip
 FEATURES = ("sse2", "sse4.2", "avx", "avx2", "fma", "avx512f", "neon", "sve")  # as LLVM calls them
-NAMES = ("V_C", "a_C")
-INPUTS = ("theta", "ec", "AB", "BC", "omega0")
-
-# Arithmetic on doubles, packed and one at a time; groups: x86-64 register, AArch64 vector.
-_PACKED = re.compile(
-    r"^\s+(?:v?(?:add|sub|mul|div|sqrt)pd|vf?n?m(?:add|sub)\d+pd)\s.*%([xyz]mm)\d+"
-    r"|^\s+f(?:add|sub|mul|div|sqrt|mla|mls)\s+(?:v\d+\.2d|z\d+\.d)",
-    re.M,
-)
-_SINGLE = re.compile(
-    r"^\s+(?:v?(?:add|sub|mul|div|sqrt)sd|vf?n?m(?:add|sub)\d+sd)\s"
-    r"|^\s+f(?:n?m?add|n?m?sub|n?mul|div|sqrt)\s+d\d+",
-    re.M,
-)
-_LIBRARY = re.compile(r"(?<![\w.])[$_]*(sincos|sin|cos)(?:@PLT)?(?=[\s,)]|$)", re.M)
-_DOUBLES = {"xmm": 2, "ymm": 4, "zmm": 8, "": 2}
 
 
 class Examination(NamedTuple):
@@ -44,28 +28,9 @@ class Examination(NamedTuple):
     usable: bool
 
 
-class AssemblyLoop(NamedTuple):
-    """Instruction counts of a kernel's machine code, and its calls of the C library."""
-
-    packed: int
-    single: int
-    doubles: int
-    library_calls: tuple[str, ...]
-
-    @property
-    def vectorised(self) -> bool:
-        """True if the loop is vectorised: one copy is packed, a second one handles the remaining points."""
-        return self.packed > 0 and 2 * self.packed >= self.single
-
-
-def report() -> str:
-    """The report as text."""
-    return examine().text
-
-
-def examine() -> Examination:
-    """Examine the installation; problems are reported, never raised."""
-    loop_lines, usable = _loops()
+def examine(accuracy: bool = False) -> Examination:
+    """Examine the installation, its values beside frozen truths too; problems are reported, never raised."""
+    computed, usable = _computation(accuracy)
     parts = {
         "desaxe": [_row("version", _version("desaxe")), _row("place", str(Path(__file__).parents[1]))],
         "runtime": [_row("python", _python()), *(_row(name, _version(name)) for name in RUNTIME)],
@@ -74,7 +39,7 @@ def examine() -> Examination:
         "committed kernels": [_committed()],
         "arrays": [_row("tier", _tier())],
         "processor": _processor(),
-        "loops": loop_lines,
+        "computation": computed,
     }
     usable = usable and not any(_version(name) == MISSING for name in RUNTIME)
     lines = [line for title, rows in parts.items() for line in (title, *rows)]
@@ -170,57 +135,36 @@ def _processor() -> list[str]:
     return rows
 
 
-# ---- does it vectorise? --------------------------------------------------------------------------
+# ---- does it compute? ----------------------------------------------------------------------------
+
+POINTS, CLOSE = 4096, 1e-13
+PRESS: dict[str, Any] = {"ec": 0.01, "AB": 0.04, "BC": 0.1, "omega0": 31.4}
 
 
-def _loops() -> tuple[list[str], bool]:
-    """Compile a kernel as `evaluate` does; return report lines about its machine code, and if it compiled."""
+def _computation(accuracy: bool) -> tuple[list[str], bool]:
+    """Report lines of arrays, which are compiled, beside single points, which are not; if they are right."""
     started = time.perf_counter()
     try:
-        assembly = "\n".join(_assembly())
+        apart = _array_beside_points()
+        shares = worst_shares() if accuracy else {}
     except Exception as error:  # whatever stops a compilation is what the user must know
-        return [_row("compilation", f"FAILED: {type(error).__name__}: {error}")], False
+        return [_row("arrays", f"FAILED: {type(error).__name__}: {error}")], False
     seconds = time.perf_counter() - started
-    loop = examine_assembly(assembly)
-    bits = 64 * loop.doubles
-    if loop.vectorised:
-        verdict = f"yes, {loop.doubles} doubles at a time ({bits} bit)"
-    else:
-        verdict = "no, one double at a time"
-    calls = ", ".join(loop.library_calls)
-    sines = (
-        f"calls of the C library ({calls}), one at a time" if calls else "inside the loop, vectorised with it"
-    )
-    sines = sines if loop.vectorised or calls else "inside the loop"
-    return [
-        _row("compilation", f"a kernel for {', '.join(NAMES)} in {seconds:.1f} s"),
-        _row("vectorised", f"{verdict}: {loop.packed} packed and {loop.single} single operations"),
-        _row("sin, cos", sines),
-    ], True
+    rows = [_row("arrays", f"a_C at {POINTS:,} points in {seconds:.1f} s, {apart:.0e} from single points")]
+    rows += [
+        _row(what, f"200 frozen truths: {share:.2g} of the promised error at most")
+        for what, share in shares.items()
+    ]
+    return rows, apart < CLOSE and all(share <= 1.0 for share in shares.values())
 
 
-def examine_assembly(assembly: str) -> AssemblyLoop:
-    """Count packed and single arithmetic on doubles, and the C library's sines and cosines."""
-    registers = [match[1] or "" for match in _PACKED.finditer(assembly)]
-    doubles = max((_DOUBLES[register] for register in registers), default=1)
-    single = len(_SINGLE.findall(assembly))
-    calls = tuple(sorted(set(_LIBRARY.findall(assembly))))
-    return AssemblyLoop(len(registers), single, doubles, calls)
-
-
-def _assembly() -> Iterator[str]:
-    """The assembly of a fresh kernel with every input an array; numba has none for a cached kernel."""
+def _array_beside_points() -> float:
+    """The largest relative difference between values of an array and those of its points alone."""
     import numpy as np
 
-    from ..compiler.languages.numba.module import TO_COMPILE, emit_numba
-    from ..runtime.kernels import kernel_of, key_of
-    from ..runtime.request import request
-
-    columns = dict.fromkeys(INPUTS, np.ones(8))
-    wanted = request(NAMES, {"omega0": 1.0}, 1, "standard")
-    key = key_of(wanted, {}, columns, dict.fromkeys(INPUTS, 0), axes=1)
-    njit: Any = import_module("numba").njit
-    scope: dict[str, Any] = {}
-    exec(emit_numba(kernel_of(key), "A kernel.", TO_COMPILE), scope)
-    compiled = njit(scope["signature"], error_model="numpy", nogil=True)(scope["function"])
-    yield from compiled.inspect_asm().values()
+    theta = np.linspace(0.1, 6.3, POINTS)
+    array = evaluate("a_C", theta=theta, **PRESS)
+    largest = float(np.abs(array).max())
+    some = range(0, POINTS, POINTS // 16)
+    apart = (abs(array[k] - evaluate("a_C", theta=float(theta[k]), **PRESS)) for k in some)
+    return float(max(apart)) / largest
