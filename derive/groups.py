@@ -4,8 +4,6 @@ from typing import NamedTuple
 
 from desaxe.mechanism.names import PARAMETERS, sensitivity
 
-from .quantities import SECOND_ORDER
-
 
 class Group(NamedTuple):
     """A kernel module of generated/."""
@@ -28,12 +26,6 @@ def first(name: str) -> tuple[str, ...]:
     return tuple(sensitivity(name, p) for p in parameters)
 
 
-def second(name: str) -> tuple[str, ...]:
-    """A quantity's second sensitivities."""
-    pairs = [(p, q) for i, p in enumerate(PARAMETERS) for q in PARAMETERS[i:]]
-    return tuple(sensitivity(sensitivity(name, p), q) for p, q in pairs)
-
-
 JOINTS = tuple(f"F_{joint}_{axis}" for joint in "ABC" for axis in "XY")
 GUIDE = ("N_C", "F_friction")
 FRAME = ("F_shaking_X", "F_shaking_Y", "M_shaking")
@@ -53,11 +45,10 @@ GROUPS = (
     ),
     Group(
         "rod",
-        "angles, speed and acceleration of the rod with all their sensitivities",
+        "angles, speed and acceleration of the rod with all first sensitivities",
         (
             *(*ROD_ANGLES, *ROD_RATES),
             *(name for quantity in (*ROD_ANGLES, *ROD_RATES) for name in first(quantity)),
-            *(name for quantity in ROD_RATES if quantity in SECOND_ORDER for name in second(quantity)),
         ),
     ),
     Group(

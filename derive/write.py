@@ -17,15 +17,15 @@ import sympy
 from desaxe import compiler
 from desaxe.compiler.builder import module_text, with_sources
 from desaxe.compiler.cost import cost_of
-from desaxe.compiler.languages.numba.module import emit_numba_with_front
-from desaxe.compiler.lowering import Limits, guarded_for_loops, nest
+from desaxe.compiler.languages.numba.library import HELPER_FILE, Library, emit_helpers, emit_library
+from desaxe.compiler.passes.bind import assume
 from desaxe.compiler.passes.double_angles import DoubleTrigonometry
 from desaxe.compiler.passes.pipeline import optimise
 from desaxe.compiler.passes.slicing import keep_outputs
 from desaxe.compiler.passes.trigonometry import Trigonometry
 from desaxe.compiler.program import Program, renamed
 from desaxe.compiler.text import write_function
-from desaxe.mechanism.inputs import LEAST
+from desaxe.mechanism.inputs import INPUTS, LEAST
 from desaxe.mechanism.names import CENTRES, LOADS
 from desaxe.support.files import staging, swap_in
 from desaxe.support.locks import locked
@@ -73,11 +73,16 @@ def render(derivation: Derivation) -> dict[str, str]:
         "centres.py": _program(derivation.centres, "centres", _CENTRES, digest),
         "index.py": _index(derivation, digest),
         "trigonometry.py": _trigonometry(derivation, digest),
+        f"{HELPER_FILE}.py": emit_helpers(_banner(_HELPERS, digest), derivation.trigonometry),
     }
     for group in GROUPS:
         files[f"{group.name}.py"] = _group(derivation, group, digest)
     return files
 
+
+_HELPERS = (
+    """What the modules of kernels call: arithmetic that Python has no name for, loops, fronts for arrays."""
+)
 
 _LAW = """Every quantity and sensitivity of the offset slider-crank, under paper A's law of motion.
 
@@ -108,7 +113,7 @@ def _package(digest: str) -> str:
     listing = f"    {'program':15}the frozen program, as text\n    {'state':15}its lines for a given state\n"
     listing += f"    {'centres':15}its lines for centres of mass halfway along the links\n"
     listing += f"    {'index':15}names, units, meanings\n{rooms}"
-    names = ["program", "state", "centres", "index", "trigonometry", *(group.name for group in GROUPS)]
+    names = ["program", "state", "centres", "index", "trigonometry", HELPER_FILE, *(g.name for g in GROUPS)]
     files = "\n".join(f'    "{name}.py",' for name in names)
     front = f'"""{_banner(what, digest)}\n{listing}\n"""\n\nDIGEST = "{digest}"\nFILES = (\n{files}\n)\n'
     return front + _ONE_SET.format(command=COMMAND)
@@ -117,7 +122,14 @@ def _package(digest: str) -> str:
 _ONE_SET = '''
 
 def _require_one_set():
-    """Refuse files of different derivations: what they say of each other would be wrong."""
+    """Refuse files of different derivations, and a second name: numba keeps machine code for one."""
+    if __name__ == "generated":
+        try:
+            open(f"{{__path__[0]}}/../src/desaxe/__init__.py", encoding="utf-8").close()
+        except OSError:
+            pass  # a copy of one's own
+        else:
+            raise ImportError("in a clone of desaxe its kernels are desaxe.generated: import them from there")
     for name in FILES:
         try:
             with open(f"{{__path__[0]}}/{{name}}", encoding="utf-8") as file:
@@ -166,19 +178,55 @@ def _trigonometry(derivation: Derivation, digest: str) -> str:
 
 
 def _group(derivation: Derivation, group: Group, digest: str) -> str:
-    program = derivation.program
-    sliced = optimise(_cut(program, group.outputs), dict(group.fixed))
-    inputs = [name for name in sliced.inputs if name != "branch"]
-    limits = Limits(LEAST, {"theta": derivation.trigonometry.limit})
-    guarded = guarded_for_loops(sliced, inputs, limits, derivation.trigonometry)
-    kernel = nest(guarded, dict.fromkeys(inputs, 0), 1)
-    banner = _banner(f"numba kernel: {group.what}.", digest, f"{cost_of(guarded).operations} operations")
-    front = (
-        f"{group.what[0].upper()}{group.what[1:]}; arrays broadcast like NumPy.\n\n"
-        "    SI units and radians, a mapping name -> array. An infeasible or bad element is NaN,\n"
-        f"    and so is one with |theta| > {derivation.trigonometry.limit:.0f} rad.\n    "
+    """A module of kernels."""
+    stable, plain = (
+        optimise(assume(_cut(derivation.program, group.outputs), {"wide_margins": wide}), dict(group.fixed))
+        for wide in (False, True)
     )
-    return emit_numba_with_front(kernel, banner, front, {"alpha", *LOADS} - set(CENTRES))
+    centres = {name: link for name, link in zip(CENTRES, ("AB", "BC"), strict=True) if name in stable.inputs}
+    library = Library(
+        head=_head(derivation, group, stable, plain, digest),
+        what=group.what,
+        stable=stable,
+        plain=plain,
+        angle="theta",
+        sines={"sin": "sin_theta", "cos": "cos_theta"},
+        test=optimise(keep_outputs(derivation.program, ("wide_margins",))),
+        constants=derivation.trigonometry,
+        units={name: _meaning(derivation, name)[0] for name in (*stable.inputs, *stable.outputs)},
+        defaults=dict.fromkeys({"alpha", *LOADS} - set(CENTRES), "0.0"),
+        centres=centres,
+        least=LEAST,
+    )
+    return emit_library(library)
+
+
+def _head(derivation: Derivation, group: Group, stable: Program, plain: Program, digest: str) -> str:
+    """The docstring of a module of kernels."""
+    size = f"{cost_of(stable).operations} operations, {cost_of(plain).operations} where margins are wide"
+    banner = _banner(f"{group.what[0].upper()}{group.what[1:]}.", digest, size)
+    rows = []
+    for name in (*stable.inputs, *stable.outputs):
+        unit, meaning = _meaning(derivation, name)
+        rows.append(f"    {name:16} {f'[{unit}] ' if unit != '1' else ''}{meaning}")
+    inputs, outputs = rows[: len(stable.inputs)], rows[len(stable.inputs) :]
+    return "\n".join([banner, _USE, "", *inputs, "", "Results:", "", *outputs, ""])
+
+
+_USE = """    point(...)      numbers to a tuple of OUTPUTS, also inside of an @njit function
+    evaluate(...)   arrays that broadcast, to a dict of arrays
+    grid(...)       one dimension for each input of one dimension, in the order of the inputs
+
+What has no value is NaN, and so is a point with |theta| > 1.6e6 rad. SI units and radians:"""
+
+
+def _meaning(derivation: Derivation, name: str) -> tuple[str, str]:
+    """Unit and meaning of an input or a result."""
+    row = INPUTS.get(name)
+    if row is not None:
+        return row.unit, row.meaning
+    note = derivation.program.notes.get(name)
+    return ("1", "+1 or -1: the assembly") if note is None else (note.unit, note.meaning)
 
 
 def _cut(program: Program, outputs: tuple[str, ...]) -> Program:

@@ -1,9 +1,14 @@
 """The committed kernels: self-contained modules that give what `desaxe.evaluate` gives."""
 
 import inspect
+import os
 import random
+import shutil
+import subprocess
+import sys
 from importlib import import_module
 from math import inf, nan, nextafter
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +20,7 @@ from desaxe.mechanism.constants import constants
 from desaxe.mechanism.program import _text
 from tests.compiler.programs import LINKS, LOADS
 
+ROOT = Path(__file__).parents[2]
 NAMES = [group.name for group in GROUPS]
 OUTPUTS = {group.name: group.outputs for group in GROUPS}
 INPUTS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
@@ -80,7 +86,9 @@ def test_it_broadcasts(group):
 
 @pytest.mark.parametrize("group", NAMES)
 def test_its_outputs_are_those_of_the_group(group):
-    assert OUTPUTS[group] == import_module(f"desaxe.generated.{group}").OUTPUTS
+    module = import_module(f"desaxe.generated.{group}")
+    assert OUTPUTS[group] == tuple(module.OUTPUTS)
+    assert {name: dx.quantities()[name].unit for name in module.OUTPUTS} == {n: module.UNITS[n] for n in module.OUTPUTS}
 
 
 @pytest.mark.parametrize("group", NAMES)
@@ -98,7 +106,92 @@ def test_numbers_and_integers_are_taken(group):
     point = {"theta": 1, "ec": 0, "AB": 1, "BC": 3, "omega0": 2, "alpha": 0, "m_rod": 5, "r_crank": 0, "r_rod": 2}
     found = evaluate(group, **point)
     wanted = evaluate(group, **{name: float(value) for name, value in point.items()})
-    assert all(found[name].shape == () and found[name] == wanted[name] for name in OUTPUTS[group])
+    assert all(np.ndim(found[name]) == 0 and found[name] == wanted[name] for name in OUTPUTS[group])
+
+
+@pytest.mark.parametrize("group", NAMES)
+def test_a_grid_a_point_and_a_loop_of_ones_own_give_what_arrays_give(group):
+    """Designs of both forms; each axis is the innermost once, with read-only and strided inputs and outputs."""
+    module = import_module(f"desaxe.generated.{group}")
+    numbers = {name: float(column[1]) for name, column in points(2).items()}
+    numbers = {n: v for n, v in numbers.items() if n in inspect.signature(module.evaluate).parameters}
+    ec = numbers["BC"] * np.array([0.0, 0.3, 0.6, 2.0])
+    ec.flags.writeable = False
+    for axes in ({"theta": np.linspace(0, 6, 1030), "ec": ec}, {"theta": np.linspace(0, 6, 14)[::2], "BC": ec + 0.1}):
+        inputs = numbers | axes
+        order = [name for name in inspect.signature(module.grid).parameters if name in axes]
+        meshes = dict(zip(order, np.meshgrid(*(inputs[n] for n in order), indexing="ij"), strict=True))
+        expected = module.evaluate(**numbers | meshes)
+        shape = expected[OUTPUTS[group][0]].shape
+        out = {name: np.empty((*shape, 2), kind)[..., 0] for name, kind in module.OUTPUTS.items()}
+        assert module.grid(**inputs, out=out) == out
+        for name in OUTPUTS[group]:
+            np.testing.assert_array_equal(out[name], expected[name], err_msg=name)
+            np.testing.assert_array_equal(module.grid(**inputs)[name], expected[name], err_msg=name)
+        for index in [(0, 0), (3, 1), (5, 2), (6, 3)]:
+            point = module.point(**numbers | {name: float(mesh[index]) for name, mesh in meshes.items()})
+            np.testing.assert_array_equal(point, [expected[name][index] for name in OUTPUTS[group]])
+
+
+def test_a_point_is_called_from_a_loop_of_ones_own():
+    import numba
+    from desaxe.generated.motion import evaluate, point
+
+    @numba.njit
+    def largest(theta, AB, BC):
+        most = 0.0
+        for angle in theta:
+            most = max(most, abs(point(angle, 0.01, AB, BC, 100.0)[2]))
+        return most
+
+    theta = np.linspace(0, 6, 50)
+    assert largest(theta, 0.1, 0.3) == np.abs(evaluate(theta, 0.01, 0.1, 0.3, 100.0)["a_C"]).max()
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"theta": "1"}, "theta: expected real numbers, got <U1"),
+        ({"branch": 2}, "branch = 2: it is \\+1 or -1"),
+        ({"out": {"Y": np.empty(3)}}, "out= is a dict with the keys Y, V_C, a_C, got Y"),
+        ({"out": dict.fromkeys(("Y", "V_C", "a_C"), np.empty(2))}, r"out= for Y: expected an array of float64 of the shape \(\)"),
+    ],
+)
+def test_what_is_wrong_is_named(change, message):
+    from desaxe.generated.motion import evaluate, grid
+
+    for call in (evaluate, grid):
+        with pytest.raises((TypeError, ValueError), match=message):
+            call(**{"theta": 1.0, "ec": 0.0, "AB": 0.1, "BC": 0.3, "omega0": 1.0} | change)
+
+
+@pytest.mark.parametrize("first", ["generated", "desaxe.generated"])
+def test_a_clone_has_one_name_for_its_kernels_and_the_other_says_so(first, tmp_path):
+    """Whatever the order: numba keeps machine code by file, and its content by the module's name."""
+    code = f"""
+import importlib, sys
+sys.path.insert(0, {str(ROOT)!r})
+for name in dict.fromkeys(({first!r}, "generated", "desaxe.generated")):
+    try:
+        importlib.import_module(name + ".position").evaluate(1.0, 0.0, 0.1, 0.3)
+        print("works", name)
+    except ImportError as error:
+        print(error)
+"""
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
+    for _ in range(2):
+        run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+        assert sorted(run.stdout.splitlines()) == [
+            "in a clone of desaxe its kernels are desaxe.generated: import them from there",
+            "works desaxe.generated",
+        ]
+
+
+def test_a_copy_of_ones_own_may_have_any_name(tmp_path):
+    shutil.copytree(ROOT / "generated", tmp_path / "generated", ignore=shutil.ignore_patterns("__pycache__"))
+    code = "from generated import position; print(position.evaluate(0.0, 0.0, 0.1, 0.3)['Y'])"
+    run = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert float(run.stdout) == 0.1 + 0.3
 
 
 def feasible_points(count):

@@ -123,7 +123,7 @@ def function_text(name: str, parameters: Sequence[str], body: Sequence[str]) -> 
     """The text of a function."""
     head = [f"def {name}({', '.join(parameters)}):"]
     if len(head[0]) > WIDTH:
-        head = [f"def {name}(", *(f"{INDENT}{parameter}," for parameter in parameters), "):"]
+        head = [f"def {name}(", *(INDENT + row for row in wrap(", ".join(parameters) + ",", WIDTH)), "):"]
     return "\n".join([*head, *(INDENT + row for row in body)]) + "\n"
 
 
@@ -150,10 +150,8 @@ def module_text(docstring: str, *groups: Parts) -> str:
     names: dict[str, list[str]] = {}
     for name in sorted(words & modules.keys()):
         names.setdefault(modules[name], []).append(name)
-    blocks = [
-        [_import(module, names[module]) for module in sorted(names) if (module in _STANDARD) is standard]
-        for standard in (True, False)
-    ]
+    kinds = {module: 2 if module.startswith(".") else module not in _STANDARD for module in sorted(names)}
+    blocks = [[_import(m, names[m]) for m, own in kinds.items() if own == kind] for kind in range(3)]
     texts = dict.fromkeys(text.strip("\n") for group in groups for text in group.texts)
     future = [_FUTURE] if "Any" in words else []
     head = [f'"""{docstring}"""', *("\n".join(block) for block in (future, *blocks) if block)]

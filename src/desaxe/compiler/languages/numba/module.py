@@ -10,7 +10,7 @@ module compiles when it is imported, or loads what an earlier process compiled; 
 kept on disk, it compiles in every process.
 """
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from textwrap import wrap
 
@@ -49,16 +49,6 @@ def numba_parts(parts: Sequence[str], *files: Path, jit: str = NJIT) -> Parts:
 def emit_numba(kernel: Kernel, docstring: str, tail: str = _COMPILE) -> str:
     """The source of the module; `tail` says what becomes of `loops` and its `signature`."""
     return module_text(docstring, numba_parts([*loops_parts(kernel), tail]))
-
-
-def emit_numba_with_front(kernel: Kernel, docstring: str, front: str, optional: Container[str] = ()) -> str:
-    """A kernel's module with a function `evaluate(...)` that broadcasts like NumPy; `front` is its docstring.
-
-    Precondition: one axis, along which every input but `branch` varies. Inputs that are `optional` are
-    0 by default; those after them that are not are keywords.
-    """
-    parts = [*loops_parts(kernel), _COMPILE, *_front(kernel, front, optional)]
-    return module_text(docstring, numba_parts(parts))
 
 
 def loops_parts(kernel: Kernel) -> list[str]:
@@ -155,33 +145,3 @@ def _index(along: tuple[int, ...]) -> str:
 
 def _indented(program: Program, depth: int) -> list[str]:
     return [INDENT * depth + line for line in write_lines(program, "numba")]
-
-
-def _front(kernel: Kernel, docstring: str, optional: Container[str]) -> list[str]:
-    """The function `evaluate(...)`: broadcast, allocate, run, return a mapping."""
-    axes = [name for name, axis in kernel.inputs.items() if axis is not None]
-    parameters = _with_defaults(axes, optional)
-    parameters += ["branch=1.0"] if "branch" in kernel.inputs else []
-    arguments = [f"flat[{axes.index(name)}]" if name in axes else name for name in kernel.inputs]
-    names = ", ".join(f'"{name}"' for name in kernel.outputs)
-    integers = [name for name in kernel.outputs if kernel.types.get(name) == "i64"]
-    kind = f"int8 if name in {tuple(integers)} else float64" if integers else "float64"
-    body = [
-        f'"""{docstring}"""',
-        f"arrays = broadcast_arrays({', '.join(axes)})",
-        "flat = [ascontiguousarray(array, dtype=float64).ravel() for array in arrays]",
-        f"out = {{name: empty(arrays[0].shape, {kind}) for name in OUTPUTS}}",
-        f"kernel({', '.join(arguments)}, *(array.reshape(-1) for array in out.values()))",
-        "return out",
-    ]
-    return [f"OUTPUTS = ({names},)\n", function_text("evaluate", parameters, body)]
-
-
-def _with_defaults(names: list[str], optional: Container[str]) -> list[str]:
-    """Parameters of a function; a star stands before the first that has no default after one that has."""
-    found: list[str] = []
-    for name in names:
-        if name not in optional and found and found[-1].endswith("=0.0") and "*" not in found:
-            found.append("*")
-        found.append(f"{name}=0.0" if name in optional else name)
-    return found

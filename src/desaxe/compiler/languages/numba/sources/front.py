@@ -1,0 +1,149 @@
+"""Loops over blocks of points and rows of a grid, and functions of arrays, for modules that people import."""
+
+from math import prod
+from typing import TYPE_CHECKING
+
+from numba import njit, types
+from numba.extending import overload
+from numpy import (
+    asarray,
+    ascontiguousarray,
+    broadcast_shapes,
+    broadcast_to,
+    can_cast,
+    copyto,
+    empty,
+    float64,
+    ndarray,
+)
+
+if TYPE_CHECKING:
+
+    def sines(angle, sine, cosine):
+        """The sines and cosines of a block of angles: written from a Program."""
+
+
+BLOCK = 1024  # points: their inputs and sines stay in the cache, and slices cost little beside them
+
+
+def compiled(function):
+    """The function for numba, its machine code kept on disk where numba finds a folder for it."""
+    try:
+        return njit(cache=True, error_model="numpy", nogil=True)(function)
+    except RuntimeError:
+        return njit(error_model="numpy", nogil=True)(function)
+
+
+def value_at(part, i):
+    """The element of an array; a number is that of all points."""
+    return part if isinstance(part, float) else part[i]
+
+
+@overload(value_at, inline="always")
+def _value_at(part, i):
+    if isinstance(part, types.Array):
+        return lambda part, i: part[i]
+    return lambda part, i: part
+
+
+def row_part(column, row):
+    """The array that varies along a row, or the number that a row has."""
+    return column if isinstance(column, ndarray) else column[0][row // column[1] % column[0].size]
+
+
+@overload(row_part, inline="always")
+def _row_part(column, row):
+    if isinstance(column, types.Array):
+        return lambda column, row: column
+    return lambda column, row: column[0][row // column[1] % column[0].size]
+
+
+@njit(error_model="numpy")
+def part_of(column, buffer, start, size):
+    """The block of a column, or of the buffer of its one number."""
+    return buffer[:size] if column.size == 1 else column[start : start + size]
+
+
+@njit(error_model="numpy")
+def hold(columns, buffers):
+    """Repeat the numbers of columns that have but one."""
+    for k in range(len(columns)):
+        if columns[k].size == 1:
+            buffers[k] = columns[k][0]
+
+
+def column_of(name, value):
+    """An input as an array that numba takes; TypeError that names it if it holds no real numbers."""
+    column = asarray(value)
+    if column.dtype.kind not in "fiu":
+        raise TypeError(f"{name}: expected real numbers, got {column.dtype}")
+    column = ascontiguousarray(column, dtype=float64).reshape(column.shape)
+    return column if column.flags.writeable and column.flags.aligned else column.copy()
+
+
+def outputs_of(kinds, shape, out):
+    """The arrays to fill by name: new ones, or those of `out` after a check."""
+    if out is None:
+        return {name: empty(shape, kind) for name, kind in kinds.items()}
+    if set(out) != set(kinds):
+        raise ValueError(f"out= is a dict with the keys {', '.join(kinds)}, got {', '.join(out)}")
+    for name, kind in kinds.items():
+        target = out[name]
+        if not (
+            isinstance(target, ndarray)
+            and target.shape == shape
+            and can_cast(kind, target.dtype, "same_kind")
+        ):
+            raise ValueError(f"out= for {name}: expected an array of {kind.__name__} of the shape {shape}")
+    return {name: out[name] for name in kinds}
+
+
+def run(fill, sizes, columns, branch, kinds, targets):
+    """The targets, filled by compiled loops."""
+    if branch not in (1, -1):
+        raise ValueError(f"branch = {branch}: it is +1 or -1")
+    flat = {
+        name: target.reshape(-1)
+        if target.flags.c_contiguous and target.flags.aligned and target.dtype == kinds[name]
+        else empty(target.size, kinds[name])
+        for name, target in targets.items()
+    }
+    if prod(sizes):
+        fill(columns, *sizes, float(branch), tuple(flat.values()))
+    for name, target in targets.items():
+        if flat[name].base is not target and flat[name] is not target:
+            copyto(target, flat[name].reshape(target.shape), casting="same_kind")
+    return targets
+
+
+def broadcast(fill, kinds, inputs, branch, out):
+    """Fill outputs of the shape that all inputs broadcast to; those of numbers alone are numbers."""
+    columns = [column_of(name, value) for name, value in inputs.items()]
+    shape = broadcast_shapes(*(column.shape for column in columns))
+    flat = [
+        c.reshape(-1) if c.size == 1 or c.shape == shape else broadcast_to(c, shape).flatten()
+        for c in columns
+    ]
+    targets = run(fill, (prod(shape),), tuple(flat), branch, kinds, outputs_of(kinds, shape, out))
+    return targets if out is not None or shape else {name: target[()] for name, target in targets.items()}
+
+
+def outer(fill, angle, kinds, inputs, branch, out):
+    """Fill outputs of one dimension for each input of one dimension, in the order of the inputs."""
+    columns = {name: column_of(name, value) for name, value in inputs.items()}
+    for name, column in columns.items():
+        if column.ndim > 1:
+            raise ValueError(f"{name}: a grid takes numbers and arrays of one dimension, got {column.ndim}")
+    shape = tuple(column.size for column in columns.values() if column.ndim)
+    rows, length = prod(shape[:-1]), shape[-1] if shape else 1
+    sine, cosine = empty(columns[angle].shape), empty(columns[angle].shape)
+    sines(columns[angle].reshape(-1), sine.reshape(-1), cosine.reshape(-1))
+    periods, period, left = {}, max(rows, 1), len(shape)
+    for name, column in columns.items():
+        left -= column.ndim
+        period = period // max(column.size, 1) if column.ndim and left else period
+        periods[name] = 0 if column.ndim and not left else period if column.ndim else 1
+    columns |= {"sine": sine, "cosine": cosine}
+    periods |= dict.fromkeys(("sine", "cosine"), periods[angle])
+    parts = [c if not periods[n] else (c.reshape(-1), periods[n]) for n, c in columns.items()]
+    return run(fill, (rows, length), tuple(parts), branch, kinds, outputs_of(kinds, shape, out))
