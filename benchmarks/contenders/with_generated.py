@@ -10,7 +10,7 @@ GROUPS = ("motion", "sensitivities", "rod", "forces")
 
 
 def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: int) -> Run:
-    """It computes all results of its module; LookupError where none has the names of the work."""
+    """Prepare the smallest module that has the names of the work; LookupError where there is none."""
     modules = (import_module(f"desaxe.generated.{group}") for group in GROUPS)
     module = next((m for m in modules if set(work.names) <= m.OUTPUTS.keys()), None)
     if module is None or work.kind in ("peak", "prepared"):
