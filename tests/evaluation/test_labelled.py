@@ -63,10 +63,23 @@ def test_units_of_attributes_and_of_a_machine():
         assert shown["status"].dims == ("theta", "design")
 
 
-def test_dask_stays_lazy():
+@pytest.mark.parametrize("labelled", [True, False])
+@pytest.mark.parametrize("call", [dx.evaluate, dx.peak])
+def test_a_dask_array_is_refused_with_the_remedy(call, labelled):
     pytest.importorskip("dask.array")
-    found = dx.evaluate("a_C", theta=THETA.chunk(2), ec=EC, **MACHINE)
-    assert found.chunks is not None
+    ec = EC.chunk(2) if labelled else EC.chunk(2).data
+    with pytest.raises(TypeError, match=r"^ec: a Dask array; give ec\.compute\(\), or grid\(..., chunks=\)"):
+        call("a_C", **{"theta": THETA[0].item()} if call is dx.evaluate else {}, ec=ec, **MACHINE)
+
+
+@pytest.mark.parametrize("dask_way", ["parallelized", "allowed"])
+def test_apply_ufunc_goes_chunk_by_chunk(dask_way):
+    pytest.importorskip("dask.array")
+    found = xr.apply_ufunc(
+        lambda theta, ec: dx.evaluate("a_C", theta=theta, ec=ec, **MACHINE),
+        *((THETA.chunk(2), EC) if dask_way == "parallelized" else (THETA, EC)),
+        dask=dask_way, output_dtypes=[float],
+    )  # fmt: skip
     np.testing.assert_allclose(found, dx.evaluate("a_C", theta=THETA, ec=EC, **MACHINE), rtol=1e-12)
 
 

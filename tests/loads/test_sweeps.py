@@ -1,10 +1,9 @@
-"""Loads that vary with the motion in lazy grids, sweeps and lazy peaks: as in memory."""
+"""Loads that vary with the motion in lazy grids and sweeps: as in memory."""
 
 import pickle
 import subprocess
 import sys
 
-import dask.array as da
 import numpy as np
 import pytest
 
@@ -50,8 +49,6 @@ def test_reductions_and_peaks_follow_the_load():
     peaks = dx.peak("T_in", ec=EC[:, None], F_Y=LOADS["stroke"], **MACHINE)
     np.testing.assert_allclose(found.peak_absmax_T_in, peaks["value"], rtol=1e-12)
     np.testing.assert_allclose(found.peak_absmax_T_in_wrt_ec, peaks["gradient"]["ec"], rtol=1e-9, atol=1e-8)
-    lazy = dx.peak("T_in", ec=da.from_array(EC[:, None], chunks=2), F_Y=LOADS["stroke"], **MACHINE)
-    np.testing.assert_allclose(lazy["value"], peaks["value"], rtol=1e-12)
     spread = dx.sweep("T_in", reduce={("theta", "ec"): "p95"}, chunks={"BC": 1}, **inputs)
     np.testing.assert_allclose(spread.T_in_p95, whole.quantile(0.95, ["theta", "ec"]), rtol=1e-12)
 

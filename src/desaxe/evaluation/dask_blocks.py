@@ -1,16 +1,13 @@
 """A task of many outputs over the chunks of Dask arrays: one task a chunk, one more per output."""
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.request import as_number
 from ..support.extras import needed
-from ..support.forks import IMPORTS
-from .arrays import as_array, broadcast_shape
 
 Array = NDArray[Any]
 
@@ -28,54 +25,6 @@ class ChunkTask(Protocol):
 
     def compute(self, *blocks: Array) -> Mapping[str, Array]:
         """The outputs of a chunk, from a block of each argument."""
-
-
-def is_lazy(value: Any) -> bool:
-    """True for a Dask array, or a labelled array of one."""
-    graph = getattr(value, "__dask_graph__", None)
-    return graph is not None and graph() is not None
-
-
-def as_dask(name: str, value: Any) -> Any:
-    """A Dask array of real numbers; a labelled array without its labels."""
-    with IMPORTS:
-        import dask.array as da
-
-    array = da.asarray(getattr(value, "data", value) if hasattr(value, "dims") else value)
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name}: expected real numbers, got a Dask array of {array.dtype}")
-    return array
-
-
-def lazily(
-    made: Callable[[dict[str, float], tuple[str, ...]], ChunkTask],
-    inputs: Sequence[str],
-    given: Mapping[str, Any],
-    names: Sequence[str],
-) -> dict[str, Any]:
-    """The outputs of a task over inputs that broadcast, as Dask arrays; some of them are Dask arrays.
-
-    made   the task, from the inputs that are numbers and the names of the others; loads that vary with the
-           motion are its own
-    """
-    with needed("Dask arrays"):
-        from dask.base import tokenize
-
-    scalars: dict[str, float] = {}
-    arrays: dict[str, Any] = {}
-    for name in (name for name in inputs if not callable(given.get(name))):
-        value = given.get(name)
-        number = None if is_lazy(value) else as_number(name, value, inputs, names)
-        if number is None:
-            array = value if is_lazy(value) else as_array(name, value, inputs, names)
-            arrays[name] = as_dask(name, array)
-        else:
-            scalars[name] = number
-    rank = len(broadcast_shape(arrays))
-    task = made(scalars, tuple(arrays))
-    token = tokenize(task.identity, *(array.name for array in arrays.values()))
-    arguments = [(array, tuple(range(rank - array.ndim, rank))) for array in arrays.values()]
-    return outputs_of_blocks(task, arguments, tuple(range(rank)), token)
 
 
 def outputs_of_blocks(

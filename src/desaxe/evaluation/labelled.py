@@ -9,7 +9,6 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS
 from ..support.extras import needed
 from .arrays import as_array
-from .dask_blocks import as_dask, is_lazy
 from .labels import attributes, input_attributes, provenance
 
 if TYPE_CHECKING:
@@ -26,17 +25,14 @@ def evaluate_labelled(
 ) -> dict[str, Any]:
     """The values by name as DataArrays, with the coordinates of the inputs and units.
 
-    `run` evaluates plain arrays, which broadcast by position; Dask arrays stay lazy. ValueError for labels
-    that differ along a dimension, and for an array without labels beside others of several dimensions.
+    `run` evaluates plain arrays, which broadcast by position. ValueError for labels that differ along a
+    dimension, and for an array without labels beside others of several dimensions.
     """
     with needed("labelled arrays"):
         import xarray
     labelled = {name: value for name, value in given.items() if is_labelled(value)}
     _refuse_unlabelled(given, labelled)
-    arrays = [
-        value.copy(data=as_dask(name, value) if is_lazy(value) else as_array(name, value, (), names))
-        for name, value in labelled.items()
-    ]
+    arrays = [value.copy(data=as_array(name, value, (), names)) for name, value in labelled.items()]
 
     def plain(*found: Any) -> Any:
         answer = run({**given, **dict(zip(labelled, found, strict=True))})
@@ -44,9 +40,7 @@ def evaluate_labelled(
         whole = [answer[n] if answer[n].shape == shape else np.broadcast_to(answer[n], shape) for n in names]
         return tuple(whole) if len(whole) > 1 else whole[0]
 
-    outputs = xarray.apply_ufunc(
-        plain, *arrays, join="exact", dask="allowed", output_core_dims=[()] * len(names)
-    )
+    outputs = xarray.apply_ufunc(plain, *arrays, join="exact", output_core_dims=[()] * len(names))
     state = given.get("omega") is not None
     found = dict(zip(names, outputs if len(names) > 1 else (outputs,), strict=True))
     return {n: array.rename(n).assign_attrs(attributes(n, state)) for n, array in found.items()}

@@ -117,7 +117,7 @@ def of_labelled_arrays(
 def of_any_arrays(
     asked: Request, inputs: Sequence[str], given: Mapping[str, Any], threads: int | None, out: Any
 ) -> dict[str, Any]:
-    """The values for arrays of any kind: labelled ones by their dimensions, lazily if one is a Dask array."""
+    """The values for arrays of any kind: labelled ones by their dimensions."""
     evaluate_arrays = _evaluate_arrays()
     for name in inputs:
         value = given.get(name)
@@ -133,13 +133,4 @@ def of_any_arrays(
                 return of_any_arrays(asked, inputs, plain, threads, None)
 
             return evaluate_labelled(run, asked.shown, {name: given.get(name) for name in inputs})
-        elif hasattr(value, "__dask_graph__"):
-            with IMPORTS:
-                from .dask_blocks import is_lazy
-
-            if is_lazy(value):
-                with IMPORTS:
-                    from .lazy_evaluate import evaluate_lazily
-
-                return evaluate_lazily(asked, given, threads, out)
     return evaluate_arrays(asked, given, threads, out)

@@ -58,6 +58,10 @@ def read_array(row: Input, value: Any, system: "UnitSystem | None" = None) -> "N
     with IMPORTS:
         import numpy as np
 
+    graph = getattr(value, "__dask_graph__", None)
+    if graph is not None and graph() is not None:
+        remedy = f"give {row.name}.compute(), or grid(..., chunks=) for lazy values"
+        raise TypeError(f"{row.name}: a Dask array; {remedy}")
     if system or not isinstance(value, (tuple, list)):
         value = in_si(row, value, system)
     value = getattr(value, "data", value) if hasattr(value, "dims") else value

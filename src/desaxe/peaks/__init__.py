@@ -14,5 +14,5 @@ under        the compiled search under tables, and these as its arguments
 course       these loads over the angle: kinks, jumps, nodes
 jumps        extrema at jumps and kinks: their side, angle and gradient
 differences  the slope of a load that is a function, where it was not given
-lazy         peaks as Dask arrays
+block        the peaks of a block of designs
 """

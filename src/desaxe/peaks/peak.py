@@ -29,7 +29,6 @@ from ..mechanism.spoken import named
 from ..mechanism.status import PeakStatus
 from ..runtime.request import as_number, check_common
 from ..support.answer import Answer
-from ..support.forks import IMPORTS
 from ..support.shown import shown as shown_value
 from .designs import KINDS, PeakPlan, Sought, peaks_of_designs, plan_of, search_of
 from .nodes import Array
@@ -106,15 +105,6 @@ def peak(
     _warn_of_columns(given, plan)
     if "omega0" in plan.needs and omega0 is None:
         given["omega0"] = 0.0 if "omega0" not in plan.parameters else None  # which only the status uses
-    if any(hasattr(given.get(n), "__dask_graph__") for n in plan.needs):
-        with IMPORTS:
-            from ..evaluation.dask_blocks import is_lazy
-
-        if any(is_lazy(given.get(n)) for n in plan.needs):
-            with IMPORTS:
-                from .lazy import lazy_peak
-
-            return Answer(lazy_peak(sought, given), partial(units_of_extreme, name), PeakStatus)
     arrays = {n: as_array(n, given.get(n), plan.needs, (name,)) for n in sought.numbers}
     shape = broadcast_shape(arrays)
     columns = {n: _flat(a, shape) for n, a in arrays.items()}

@@ -14,8 +14,8 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
 from ..mechanism.own import Definition
 from ..mechanism.status import PeakStatus
+from ..peaks.block import GRADIENT, PeakBlock, peak_block
 from ..peaks.designs import KINDS, Sought, plan_of
-from ..peaks.lazy import GRADIENT, PeakBlock, peak_block
 from ..units.text import quotient
 
 Array = NDArray[Any]

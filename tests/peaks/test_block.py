@@ -1,7 +1,6 @@
-"""`peak` of chunked designs, and peaks beside the grid of a sweep."""
+"""Peaks beside the grid of a sweep."""
 
 import dask
-import dask.array as da
 import numpy as np
 import pytest
 
@@ -15,19 +14,6 @@ MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
 def _synchronous():
     with dask.config.set(scheduler="synchronous"):
         yield
-
-
-@pytest.mark.thorough
-def test_chunked_designs_stay_lazy():
-    lazy = dx.peak("a_C", ec=da.from_array(EC, chunks=2), **MACHINE)
-    eager = dx.peak("a_C", ec=EC, **MACHINE)
-    assert lazy["value"].chunks == ((2, 2, 2, 1),)
-    assert lazy["status"].compute().tolist() == eager["status"].tolist()
-    for name in ("value", "theta"):
-        np.testing.assert_allclose(lazy[name].compute(), eager[name], rtol=1e-9, atol=1e-9)
-    assert lazy["gradient"].keys() == eager["gradient"].keys()
-    for name, slope in eager["gradient"].items():
-        np.testing.assert_allclose(lazy["gradient"][name].compute(), slope, rtol=1e-6)
 
 
 @pytest.mark.thorough

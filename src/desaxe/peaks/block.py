@@ -1,7 +1,6 @@
-"""`peak` of chunked designs: lazy Dask arrays, by the compiled search; and the block that a sweep runs."""
+"""The peaks of a block of designs of a sweep, by the compiled search."""
 
 from collections.abc import Mapping
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,7 +8,6 @@ from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
 from ..evaluation.arrays import broadcast_shape
-from ..evaluation.dask_blocks import lazily
 from ..mechanism.own import using
 from ..runtime.compiled_only import compiled_only
 from ..runtime.interpreted import are_good
@@ -73,12 +71,3 @@ def peak_block(sought: Sought, scalars: Mapping[str, float], varying: tuple[str,
     search = search_of(sought.plan, shapes, sought.ends)
     own = sought._replace(threads=sought.threads or 1, loads=dict(sought.loads))
     return PeakBlock(own, search, tuple(scalars.items()), varying)
-
-
-def lazy_peak(sought: Sought, given: Mapping[str, Any]) -> dict[str, Any]:
-    """The results of `peak` as Dask arrays."""
-    plan, given = sought.plan, {**given, **sought.loads}
-    found = lazily(partial(peak_block, sought), plan.needs, given, plan.wanted.shown[:1])
-    gradient = {n.removeprefix(GRADIENT): found.pop(n) for n in list(found) if n.startswith(GRADIENT)}
-    first = {name: found.pop(name) for name in ("value", "theta", "side")}
-    return {**first, "gradient": gradient, "status": found["status"]}
