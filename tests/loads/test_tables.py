@@ -92,7 +92,9 @@ def test_files(tmp_path):
     path.write_text("Y out in\n10 1 2\n20 3 4\n", "utf-8")
     assert dx.over_Y.read(path, Y="mm", value="N") == dx.over_Y(["10 mm", "20 mm"], ["1 N", "3 N"], [2, 4])
     path.write_text("0, 1\n1, one\n", "utf-8")
-    with pytest.raises(ValueError, match=r"press.csv, line 2: expected 2 or more numbers"):
+    with pytest.raises(
+        ValueError, match=r"press.csv, line 2, column 2 \(value\): 'one' is not a finite number"
+    ):
         dx.over_theta.read(path)
     path.write_text("0, 1\n9, 2\n", "utf-8")
     with pytest.raises(ValueError, match=r"press.csv: over_theta: the angles go over 9 rad"):
@@ -101,7 +103,7 @@ def test_files(tmp_path):
         dx.over_theta.read(tmp_path / "nowhere.csv")
 
 
-ODD = ["1_0", "\u0661", "\uff11", "1,5", "0x1", "1e", "1__0", "\u00b2"]
+ODD = ["1_0", "\u0661", "\uff11", "1,5,2", "0x1", "1e", "1__0", "\u00b2"]
 
 
 @pytest.mark.parametrize("odd", ODD)
@@ -111,10 +113,14 @@ def test_what_python_alone_reads_as_a_number_is_refused(odd, tmp_path):
     for row in (f"{odd};-400;3", f"90;{odd};3", f"90;-400;{odd}"):
         path.write_text(f"0;1;2\n{row}\n120;2;4\n", encoding="utf-8")
         for units in ({"Y": "mm"}, {"Y": "mm", "value": "kN"}):
-            with pytest.raises((ValueError, TypeError), match=r"number|a quantity in"):
+            with pytest.raises(
+                (ValueError, TypeError), match=r"line 2, column [123] .* is not a finite number"
+            ):
                 dx.over_Y.read(path, **units)
         if not row.endswith(odd):  # it has two columns
-            with pytest.raises(ValueError, match=r"press\.csv, line 2: expected 2 or more numbers"):
+            with pytest.raises(
+                ValueError, match=r"press\.csv, line 2, column [12] .* is not a finite number"
+            ):
                 dx.over_theta.read(path, theta="deg")
     with pytest.raises((ValueError, TypeError)):
         dx.over_theta([0.0, odd, 3.0], [1.0, 2.0, 3.0], kind="linear")

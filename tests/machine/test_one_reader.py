@@ -137,7 +137,8 @@ def test_a_measure_at_a_plain_angle_is_in_the_callers_units():
     )
 
 
-def test_the_command_line_reads_plain_numbers_of_a_fit_in_the_units_of_the_scene(tmp_path, capsys):
+@pytest.mark.parametrize("heads", ["theta [deg],Y [mm]", "theta,Y"])
+def test_the_command_line_reads_plain_numbers_of_a_fit_in_the_units_of_the_scene(heads, tmp_path, capsys):
     scene, data = tmp_path / "press.toml", tmp_path / "press.csv"
     mechanism = "mechanism = {ec = 10, AB = 40, BC = 130}"
     scene.write_text(f'units = "{UNITS}"\noutputs = ["Y"]\nmotion = {{theta = 1}}\n{mechanism}')
@@ -145,7 +146,7 @@ def test_the_command_line_reads_plain_numbers_of_a_fit_in_the_units_of_the_scene
     shifts = 5e-5 * (-1.0) ** np.arange(angles.size)  # 0.05 mm to either side
     measured = 1e3 * (position(np.radians(angles), 0.01) + shifts)
     rows = [f"{angle},{value}" for angle, value in zip(angles, measured, strict=True)]
-    data.write_text("\n".join(["theta [deg],Y [mm]", *rows]))
+    data.write_text("\n".join([heads, *rows]))
     assert main(["fit", str(scene), str(data), "--sigma", "Y=0.05", "--over", "AB=35:50", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)  # in SI units
     assert found["value"]["AB"] == pytest.approx(0.04, rel=1e-3)

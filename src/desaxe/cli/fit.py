@@ -42,6 +42,7 @@ def add_fit(commands: Any) -> None:
 
 
 def _fit(options: argparse.Namespace) -> int:
+    from ..design.fit.data import columns_of
     from ..design.fit.fit import fit
     from ..evaluation.in_units import in_units
     from ..runtime.written import replacing_ours, require_place
@@ -62,7 +63,8 @@ def _fit(options: argparse.Namespace) -> int:
                 f"--over {name}=LOW:HIGH"
             )
     sigma = dict(_sigma(word, known.units) for word in options.sigma) or None
-    found = fit(options.data, over, sigma, options.nuisance, options.loss, branch=known.branch, **fixed)
+    data = columns_of(options.data, known.units)
+    found = fit(data, over, sigma, options.nuisance, options.loss, branch=known.branch, **fixed)
     told = in_units(found, whole.shown_in)  # JSON is in SI units
     print(json.dumps(_plain(found), indent=2) if options.json else told.report(), flush=True)
     if options.picture:

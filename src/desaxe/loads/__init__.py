@@ -6,7 +6,9 @@ function   a user's function of theta as a load
 table      tables as piecewise cubics
 absent     a warning where forces are asked for and nothing acts
 words      a load in words
-columns    numbers with or without units, from lists, arrays and files
+columns    numbers with or without units, from lists and arrays
+cells      rows of cells of texts, workbooks and frames, and the numbers of their columns
+column_files  columns of files and frames by position or name, with the units of their headings
 made       loads made of columns, checked
 maker      public calls that make loads and motors, in SI units or a machine's
 tabulated  `over_theta`, `over_Y`, `over_stroke`: loads from lists, files and functions

@@ -1,13 +1,19 @@
 """Public calls that make loads and motors: in SI units, and as methods of a machine in its units."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import wraps
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..mechanism.keywords import with_known_keywords
 from ..mechanism.quantity_units import SI, UnitSystem
 from ..mechanism.spoken import speaking
+from ..support.forks import IMPORTS
+from ..support.shown import printable
 from ..units.system import Conversion
+
+if TYPE_CHECKING:
+    from .columns import Column
 
 
 class Maker:
@@ -33,9 +39,26 @@ class Maker:
         """The unit of plain numbers of a name; None where none is given."""
         return None if self.units is None else self.units.of(name)
 
+    def columns_of_file(self, source: Any, *requested: tuple[Any, ...]) -> "list[Column]":
+        """The columns of a file or a frame in SI units; the fields of each are those of `Requested`."""
+        with IMPORTS:
+            from .column_files import Requested, read_columns
+
+        return read_columns(source, [Requested(*one) for one in requested])
+
     def __repr__(self) -> str:
         units = f" in {self.units!r}" if self.units else ""
         return f"desaxe.{self.name}({self.takes}){units}"
+
+
+@contextmanager
+def naming(source: Any) -> Iterator[None]:
+    """ValueErrors within the block begin with the name of the file."""
+    try:
+        yield
+    except ValueError as error:
+        name = "data" if hasattr(source, "columns") else printable(source)
+        raise ValueError(f"{name}: {error}") from None
 
 
 def _in_its_units(method: Callable[..., Any]) -> Callable[..., Any]:

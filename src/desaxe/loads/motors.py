@@ -3,7 +3,6 @@
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from os import PathLike
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,9 +13,9 @@ from ..mechanism.quantity_units import SI, UnitSystem
 from ..mechanism.read import read_array
 from ..mechanism.slips import warn_of_slips
 from ..mechanism.spoken import UNITS, named, speaking, spoken
-from ..support.shown import printable, shown
-from .columns import Column, column_of, column_of_file, rows_of, unit_of_column
-from .maker import Maker
+from ..support.shown import shown
+from .columns import Column, column_of
+from .maker import Maker, naming
 from .table import Table, held
 
 Array = NDArray[np.float64]
@@ -204,26 +203,24 @@ class MakeOverOmega(Maker):
 
     def read(
         self,
-        path: str | PathLike[str],
+        path: Any,
         omega: str | None = None,
         torque: str | None = None,
         kind: str = "linear",
     ) -> Motor:
-        """A motor from the first two columns of a text file: speeds of the crank and torques.
+        """A motor from the first two columns of a file or a frame: speeds of the crank and torques.
 
         omega, torque   units of the columns, such as "rpm" and "N m"; without, those of the heading, such as
                         "speed [rpm], torque [N m]", else SI units
         kind            as in `over_omega`; the form of the file is that of `over_theta.read`
         """
-        heading, rows = rows_of(path, 2)
-        omega = unit_of_column(path, "omega", omega, heading[:1])
-        torque = unit_of_column(path, "torque", torque, heading[1:2])
-        x = column_of_file("omega", rows, 0, omega, ("rad/s",), self.unit("omega"))
-        y = column_of_file("torque", rows, 1, torque, ("N*m",), self.unit("torque"))
-        try:
+        x, y = self.columns_of_file(
+            path,
+            ("omega", omega, ("rad/s",), self.unit("omega")),
+            ("torque", torque, ("N*m",), self.unit("torque")),
+        )
+        with naming(path):
             return table_over_omega(x, y, kind)
-        except ValueError as error:
-            raise ValueError(f"{printable(path)}: {error}") from None
 
 
 def table_over_omega(x: Column, y: Column, kind: str) -> Motor:

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from os import PathLike
 from typing import Any
 from warnings import warn
 
@@ -10,13 +9,13 @@ from ..mechanism.closed import TURN
 from ..mechanism.quantity_units import UnitSystem
 from ..mechanism.slips import LARGEST, UnitWarning
 from ..mechanism.spoken import spoken
-from ..support.shown import printable, shown
+from ..support.shown import shown
 from ..units.system import Conversion
-from .columns import Column, column_of, column_of_file, places_and_values, rows_of, unit_of_column
+from .columns import Column, column_of, places_and_values
 from .function import FunctionOverTheta
 from .load import Load
 from .made import table_over_stroke, table_over_theta, table_over_Y
-from .maker import Maker
+from .maker import Maker, naming
 
 LONGEST_PERIOD = 1e9
 FARTHEST = LARGEST["ec"]  # m: a position beyond is almost surely in another unit
@@ -88,30 +87,31 @@ class MakeOverTheta(Maker):
 
     def read(
         self,
-        path: str | PathLike[str],
+        path: Any,
         theta: str | None = None,
         value: str | None = None,
         kind: str = "cubic",
         period: Any = TURN,
     ) -> Load:
-        """A load over the crank angle from the first two columns of a text file.
+        """A load over the crank angle from the first two columns of a file or a frame.
 
+        path           of a text (.csv, .txt, ...), or of a workbook, whose first sheet is read; or a frame of
+                       pandas or polars
         theta, value   units of the columns, such as "deg" and "N"; without, those of the heading, such as
-                       "theta [deg], F_Y [kN]", else SI units
+                       "theta [deg], F_Y (kN)", else SI units, those of the machine for `machine.over_theta`
         kind, period   as in `over_theta`
 
-        Columns are parted by commas, semicolons, tabs or blanks; a first line without numbers is a heading,
-        and lines that begin with # are left out. Raises ValueError, which names the line.
+        Columns stand between semicolons, tabs, blanks or commas; but between commas, numbers may have decimal
+        commas. Lines above the numbers are a heading, lines that begin with # are left out. Raises
+        ValueError, which names file, line and column.
         """
-        heading, rows = rows_of(path, 2)
-        theta = unit_of_column(path, "theta", theta, heading[:1])
-        value = unit_of_column(path, "value", value, heading[1:2])
-        x = column_of_file("theta", rows, 0, theta, ("rad",), self.unit("theta"))
-        y = column_of_file("value", rows, 1, value, ("N", "N*m"), _force(self.units))
-        try:
+        x, y = self.columns_of_file(
+            path,
+            ("theta", theta, ("rad",), self.unit("theta")),
+            ("value", value, ("N", "N*m"), _force(self.units)),
+        )
+        with naming(path):
             return table_over_theta(x, y, kind, self._period(period))
-        except ValueError as error:
-            raise ValueError(f"{printable(path)}: {error}") from None
 
     def _period(self, period: Any) -> "Column":
         if isinstance(period, float) and period == TURN:  # a turn, in any unit
@@ -153,18 +153,14 @@ class MakeOverY(Maker):
         """A load over the slider's position; see `help(desaxe.over_Y)`."""
         return table_over_Y(*_columns("over_Y", "positions", positions, outward, inward, self.units), kind)
 
-    def read(
-        self, path: str | PathLike[str], Y: str | None = None, value: str | None = None, kind: str = "linear"
-    ) -> Load:
-        """A load over the slider's position from a text file: position, outward and perhaps inward.
+    def read(self, path: Any, Y: str | None = None, value: str | None = None, kind: str = "linear") -> Load:
+        """A load over the slider's position from a file or a frame: position, outward and perhaps inward.
 
         Y, value are the units of the columns; the form of the file is that of `over_theta.read`.
         """
-        columns = _columns_of_file(path, "Y", Y, value, self.units)
-        try:
+        columns = _columns_of_file(self, path, "Y", Y, value)
+        with naming(path):
             return table_over_Y(*columns, kind)
-        except ValueError as error:
-            raise ValueError(f"{printable(path)}: {error}") from None
 
 
 class MakeOverStroke(Maker):
@@ -210,22 +206,20 @@ class MakeOverStroke(Maker):
 
     def read(
         self,
-        path: str | PathLike[str],
+        path: Any,
         distance: str | None = None,
         value: str | None = None,
         kind: str = "linear",
         *,
         dead_centre: Any = None,
     ) -> Load:
-        """A load over the distance from a dead centre from a text file: distance, outward and perhaps inward.
+        """A load over the distance from a dead centre from a file: distance, outward and perhaps inward.
 
         distance, value are the units of the columns; the form of the file is that of `over_theta.read`.
         """
-        columns = _columns_of_file(path, "distance", distance, value, self.units)
-        try:
+        columns = _columns_of_file(self, path, "distance", distance, value)
+        with naming(path):
             return table_over_stroke(*columns, kind, dead_centre)
-        except ValueError as error:
-            raise ValueError(f"{printable(path)}: {error}") from None
 
 
 over_theta = MakeOverTheta()
@@ -254,15 +248,12 @@ def _columns(
 
 
 def _columns_of_file(
-    path: str | PathLike[str], places: str, unit: str | None, value: str | None, units: UnitSystem | None
+    maker: Maker, path: Any, places: str, unit: str | None, value: str | None
 ) -> tuple[Column, list[Column]]:
-    """The columns of a file: positions or distances, outward and, where all lines have it, inward."""
-    heading, rows = rows_of(path, 2)
-    unit = unit_of_column(path, places, unit, heading[:1])
-    value = unit_of_column(path, "value", value, heading[1:3])
-    x = column_of_file(places, rows, 0, unit, ("m",), _unit(units, "Y"))
-    ways = (1, 2) if all(len(row) > 2 for row in rows) else (1,)
-    return x, [column_of_file("value", rows, way, value, ("N",), _force(units)) for way in ways]
+    """The columns of a file: positions or distances, outward and, where there are numbers, inward."""
+    ways = [(way, value, ("N",), _force(maker.units)) for way in ("outward", "inward")]
+    place, *columns = maker.columns_of_file(path, (places, unit, ("m",), maker.unit("Y")), *ways)
+    return place, columns
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,6 @@
 """Arguments of a method: plain numbers in the machine's units, converted to SI."""
 
 from collections.abc import Mapping
-from os import PathLike
 from typing import Any
 
 from ..evaluation.reductions.argument import at_with_units
@@ -14,7 +13,7 @@ from ..support.forks import IMPORTS
 from ..units.text import PLUS_MINUS, with_unit_of
 
 # Arguments that carry no unit of their own name: what they are about is said by their keys.
-BY_KEY = ("over", "keep", "changes", "sigma", "data")
+BY_KEY = ("over", "keep", "changes", "sigma")
 POSITIONS = {"Y", "V_C", "a_C"}
 
 
@@ -27,11 +26,12 @@ def in_si(system: UnitSystem, name: str, value: Any) -> Any:
     """An argument in SI units; texts and pint quantities carry their units, functions are in SI."""
     if not system or value is None:
         return value
-    if name == "data" and not isinstance(value, (str, PathLike)):
+    if name == "data":
         with IMPORTS:
             from ..design.fit.data import columns_of
 
-        value = columns_of(value)
+        columns = columns_of(value, system).items()
+        return {head: part if head.unit else _converted(system, head.name, part) for head, part in columns}
     value = at_with_units(value, system)
     if name in BY_KEY and isinstance(value, Mapping):
         return {key: _converted(system, _quantity_of(key), part) for key, part in value.items()}

@@ -8,6 +8,7 @@ from .forks import IMPORTS
 EXTRAS = {
     "sympy": "derive",
     "xarray": "labelled",
+    "pandas": "labelled",
     "h5netcdf": "labelled",
     "h5py": "labelled",
     "zarr": "zarr",

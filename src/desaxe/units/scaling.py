@@ -1,37 +1,44 @@
 """Numbers and arrays times exact factors, rounded once."""
 
-from decimal import Decimal, localcontext
 from fractions import Fraction
 from math import isfinite
 from typing import Any
 
 from ..support.forks import IMPORTS
 
-_MOST_DECIMALS = 6  # of the elements of arrays that are taken as written
+_DECIMALS = (6, 12)  # of the elements of arrays that are taken as written
 
 
 def by_digits(value: Any, factor: Fraction) -> Any:
     """A number as it is written, times a factor: 2.1 mm is 0.0021 m, the double of the text "2.1 mm".
 
-    Of an array this holds for elements with up to six decimals; others are scaled as doubles.
+    Of an array this holds for elements with up to 12 decimals and 15 digits; others are scaled as doubles.
     """
     if isinstance(value, (int, float)):
         return float(Fraction(repr(float(value))) * factor) if isfinite(value) else float(value)
     with IMPORTS:
         import numpy as np
 
-    array, one = np.asarray(value, dtype=np.float64), 10**_MOST_DECIMALS
-    with np.errstate(over="ignore", invalid="ignore"):
-        count = np.rint(array * one)
-        written = count / one == array
-    result = np.where(written, scaled(count, factor / one), scaled(array, factor))
+    array = np.asarray(value, dtype=np.float64)
+    result, left = scaled(array, factor), np.isfinite(array)
+    for decimals in _DECIMALS:
+        if not left.any():
+            break
+        with np.errstate(over="ignore"):
+            count = np.rint(array * 10.0**decimals)
+        written = left & (count / 10.0**decimals == array) & (np.abs(count) < 2.0**53)
+        result = np.where(written, scaled(count, factor / 10**decimals), result)
+        left &= ~written
     return result if result.ndim else float(result)
 
 
 def scaled(value: Any, factor: Fraction) -> Any:
-    """A number times a factor, rounded once; an array in extended precision where supported."""
-    above, below = factor.as_integer_ratio()
+    """A number times a factor, rounded once; of an array the product is in twice the digits.
+
+    T. J. Dekker, Numer. Math. 18 (1971); where that overflows it is that of doubles.
+    """
     if isinstance(value, (int, float)):
+        above, below = factor.as_integer_ratio()
         if not isfinite(value):
             return float(value)
         number, under = value.as_integer_ratio()
@@ -39,11 +46,17 @@ def scaled(value: Any, factor: Fraction) -> Any:
     with IMPORTS:
         import numpy as np
 
-    wide = np.asarray(value, dtype=np.longdouble)
-    if above == 1:
-        product = wide / np.longdouble(str(below))
-    else:
-        with localcontext(prec=30):
-            product = wide * np.longdouble(str(Decimal(above) / Decimal(below)))
-    result = np.asarray(product, dtype=np.float64)
+    array, high = np.asarray(value, dtype=np.float64), float(factor)
+    with np.errstate(over="ignore", invalid="ignore"):
+        product = array * high
+        (a, b), (c, d) = _halves(array), _halves(high)
+        rest = ((a * c - product) + a * d + b * c) + b * d + array * float(factor - Fraction(high))
+        result = np.asarray(np.where(np.isfinite(rest), product + rest, product))
     return result if result.ndim else float(result)
+
+
+def _halves(value: Any) -> tuple[Any, Any]:
+    """A number as the sum of two with 26 bits each."""
+    wide = value * 134217729.0
+    high = wide - (wide - value)
+    return high, value - high

@@ -215,7 +215,7 @@ def test_numbers_of_any_size(number):
 @pytest.mark.parametrize("odd", ["1_0", "\u0661\u0662", "\uff11"])
 def test_what_python_alone_reads_as_a_number_is_no_sample(odd, tmp_path):
     (tmp_path / "data.csv").write_text(f"theta [deg], a_C\n1,2\n2,{odd}\n", encoding="utf-8")
-    with pytest.raises(ValueError, match=r"data\.csv: .* is not a number"):
+    with pytest.raises(ValueError, match=r"data\.csv, line 3, column 2 \(a_C\): .* is not a finite number"):
         fitted(tmp_path / "data.csv")
     for column in (["1", odd, "3"], [b"1", b"2", b"3"], np.array([1.0, odd, 3.0], dtype=object)):
         with pytest.raises(TypeError, match="data: a_C: expected real numbers"):
