@@ -50,30 +50,6 @@ def zero_of(load: OverY, lengths: Sequence[Array], branch: int) -> Array:
     return np.broadcast_to(found, lengths[0].shape)
 
 
-def kinks_between(
-    loads: Iterable[Load],
-    low: float,
-    high: float,
-    lengths: Sequence[float],
-    branch: int,
-    smooth: bool = False,
-) -> list[float]:
-    """The kinks of one design's loads in a range of angles; with `smooth` also where smooth pieces meet.
-
-    lengths  ec, AB, BC
-    """
-    found: list[float] = []
-    sides = [np.array([length]) for length in lengths]
-    for load in loads:
-        if isinstance(load, OverTheta):
-            found += load.nodes(low, high, smooth)
-        elif isinstance(load, OverY):
-            angles = np.append(crossings(load, load.positions(smooth), sides, branch), dead_centres(sides))
-            every = repeated(angles[None, :], low, high)
-            found += every[np.isfinite(every)].tolist()
-    return sorted(set(found))
-
-
 def turns_of(caller: str, loads: Mapping[str, Load], most: int) -> int:
     """After how many turns the loads repeat; ValueError for more than `most`."""
     turns = 1
@@ -114,18 +90,20 @@ def _repeats(load: OverTheta, angle: float) -> bool:
     return round(periods) > 0 and abs(periods - round(periods)) < 1e-9
 
 
-def meeting_angles(loads: Iterable[Load], high: float, lengths: Sequence[Array], branch: int) -> Array:
-    """For each design the angles from 0 to `high` at which pieces of loads meet, NaN in empty places.
+def meeting_angles(
+    loads: Iterable[Load], high: float, lengths: Sequence[Array], branch: int, low: float = 0.0
+) -> Array:
+    """For each design the angles from `low` to `high` at which pieces of loads meet, NaN in empty places.
 
     One row for all designs where no load is over the slider's position.
     """
     found = [np.empty((1, 0))]
     for load in loads:
         if isinstance(load, OverTheta):
-            found.append(np.array([load.nodes(0.0, high, smooth=True)]))
+            found.append(np.array([load.nodes(low, high, smooth=True)]))
         elif isinstance(load, OverY):
             own = crossings(load, load.positions(smooth=True), lengths, branch)
             angles = np.concatenate([own, dead_centres(lengths)], axis=-1)
-            found.append(repeated(angles, 0.0, high))
+            found.append(repeated(angles, low, high))
     size = max(part.shape[0] for part in found)
     return np.concatenate([np.broadcast_to(part, (size, part.shape[1])) for part in found], axis=1)

@@ -137,6 +137,7 @@ class Panels:
         k = np.argmax(here, axis=1)[:, None]
         place = np.tile(middle, 2) + np.tile(half, 2) * local
         within = (np.abs(local) < 1.0) & (np.arange(local.shape[1]) < near.shape[1])
+        within &= np.tile(half, 2) > 0.0
         k = _first_of_equal(k, here, place, within)
         found = (np.take_along_axis(part, k, 1) for part in (sign * here, place, within))
         top, at, inside = (part.reshape(self.edges.shape[:-1])[()] for part in found)
@@ -249,41 +250,78 @@ def _climbed(coefficients: Array, x: Array) -> Array:
     return x.reshape(shape)
 
 
-def resolved(functions: Callable[[Array], dict[str, Array]], breaks: list[float]) -> Panels:
-    """Panels of one design between the first and the last break, on which all functions are polynomials.
+def resolved(
+    functions: Callable[[Array, Array], dict[str, Array]], edges: Array, widest: float = WIDEST
+) -> Panels:
+    """Panels of designs, between their first and last edge, on which all functions are polynomials.
 
-    `functions(x)` gives values by name for a flat array of places. Breaks are in order. A panel is halved
-    until the Legendre coefficients of every function on it have fallen to rounding.
+    functions  of flat arrays, places and the design of each: values by name, NaN where there is none
+    edges      of one design, or a row for each, in any order; NaN in empty places
+
+    A panel is halved until the Legendre coefficients of every function on it have fallen to rounding. Designs
+    that need fewer panels end with some that have no width, where functions stay as they are.
     """
-    edges = np.array(sorted(set(breaks)))
-    # An angle that is known twice, each time rounded, is one: no polynomial fits the doubles between them.
-    edges = edges[np.append(True, np.diff(edges) > SAME)]
-    edges[-1] = max(breaks)
-    counts = np.maximum(1, np.ceil(np.diff(edges) / WIDEST)).astype(int)
-    pieces = [np.linspace(a, b, n + 1) for a, b, n in zip(edges[:-1], edges[1:], counts, strict=True)]
-    start, stop = (np.concatenate([piece[part] for piece in pieces]) for part in (np.s_[:-1], np.s_[1:]))
-    done: list[tuple[Array, dict[str, Array]]] = []
-    scale: dict[str, float] = {}
+    design, start, stop = _first_panels(np.atleast_2d(edges), widest)
+    size = len(np.atleast_2d(edges))
+    done: list[tuple[Array, Array, Array, dict[str, Array]]] = []
+    scale: dict[str, Array] = {}
     before: dict[str, Array] = {}
-    count = 0
+    count = np.zeros(size)
     while start.size:
         x = nodes_of(start, stop)
-        values = {name: v.reshape(x.shape) for name, v in functions(x.ravel()).items()}
-        good = (stop - start <= NARROWEST) | (count > MOST)
+        values = functions(x.ravel(), np.repeat(design, NODES))
+        values = {name: v.reshape(x.shape) for name, v in values.items()}
         tails = {name: np.abs(v @ TO_COEFFICIENTS[-2:].T).max(1) for name, v in values.items()}
-        fine = np.ones(start.size, bool)
+        count += np.bincount(design, minlength=size)
+        unresolved = np.zeros(start.size, bool)
         for name, tail in tails.items():
-            scale[name] = max(scale.get(name, 0.0), float(np.abs(values[name]).max()))
-            rounding = (tail <= NOISE * scale[name]) & (tail >= PLATEAU * before.get(name, np.inf))
-            fine &= (tail <= RESOLVED * scale[name]) | rounding
-        good |= fine
-        done.append((start[good], {name: v[good] for name, v in values.items()}))
+            largest = scale.setdefault(name, np.zeros(size))
+            np.fmax.at(largest, design, np.abs(values[name]).max(1))
+            rounding = (tail <= NOISE * largest[design]) & (tail >= PLATEAU * before.get(name, np.inf))
+            unresolved |= (tail > RESOLVED * largest[design]) & ~rounding
+        good = ~unresolved | (stop - start <= NARROWEST) | (count[design] > MOST)
+        done.append((design[good], start[good], stop[good], {n: v[good] for n, v in values.items()}))
         before = {name: np.tile(tail[~good], 2) for name, tail in tails.items()}
-        start, stop = start[~good], stop[~good]
+        design, start, stop = design[~good], start[~good], stop[~good]
         middle = 0.5 * (start + stop)
+        design = np.tile(design, 2)
         start, stop = np.concatenate([start, middle]), np.concatenate([middle, stop])
-        count += start.size
-    first = np.concatenate([part[0] for part in done])
-    order = np.argsort(first)
-    joined = {name: np.concatenate([part[1][name] for part in done])[order] for name in done[0][1]}
-    return Panels(np.append(first[order], edges[-1]), joined)
+    design, start, stop = (np.concatenate([part[k] for part in done]) for k in range(3))
+    values = {name: np.concatenate([part[3][name] for part in done]) for name in done[0][3]}
+    return _in_rows(size, design, start, stop, values, np.ndim(edges) == 1)
+
+
+def _first_panels(edges: Array, widest: float) -> tuple[Array, Array, Array]:
+    """Design, start and stop of the panels between edges, the wide ones divided into equal parts."""
+    last = np.nanmax(edges, axis=1, keepdims=True)
+    edges = np.sort(np.where(edges < last - SAME, edges, last), axis=1)
+    # An angle that is known twice, each time rounded, is one: no polynomial fits the doubles between them.
+    edges[:, 1:] = np.where(np.diff(edges) > SAME, edges[:, 1:], last)
+    edges.sort(axis=1)
+    row, k = np.nonzero(np.diff(edges))
+    low, high = edges[row, k], edges[row, k + 1]
+    parts = np.ceil((high - low) / widest).astype(int)
+    number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+    design, low, high, parts = (np.repeat(each, parts) for each in (row, low, high, parts))
+    step = (high - low) / parts
+    return design, low + number * step, np.where(number + 1 < parts, low + (number + 1) * step, high)
+
+
+def _in_rows(
+    size: int, design: Array, start: Array, stop: Array, values: dict[str, Array], one: bool
+) -> Panels:
+    """Panels in any order as those of designs in rows; as those of `one` design without rows."""
+    order = np.lexsort((start, design))
+    design = design[order]
+    counts = np.bincount(design, minlength=size)
+    ends = np.cumsum(counts)
+    at = design, np.arange(design.size) - (ends - counts)[design]
+    edges = np.repeat(stop[order][ends - 1][:, None], counts.max() + 1, axis=1)
+    edges[at] = start[order]
+    rows = {}
+    for name, v in values.items():
+        ordered = v[order]
+        rows[name] = np.repeat((ordered[ends - 1] @ ENDS[1])[:, None], counts.max() * NODES, axis=1)
+        rows[name] = rows[name].reshape(size, -1, NODES)
+        rows[name][at] = ordered
+    return Panels(edges[0], {n: v[0] for n, v in rows.items()}) if one else Panels(edges, rows)

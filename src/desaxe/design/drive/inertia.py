@@ -85,14 +85,16 @@ def _store(design: Turn, fluctuation: float, before: FlywheelMotion | None) -> F
     names = ["T_in", "M_eff", "M_eff_wrt_theta"]
     motion = None if before is None else before.motion
 
-    def loads(theta: Array) -> dict[str, Array]:
+    def loads(theta: Array, row: Array) -> dict[str, Array]:
         found = design.values(names, theta, omega0=design.direction * CREEP, mu=None)
         if design.has_friction:
-            rough = design.values(["T_in"], theta, motion)["T_in"]
-            found["T_in"] = found["T_in"] + rough - design.values(["T_in"], theta, motion, mu=None)["T_in"]
+            rough = design.values(["T_in"], theta, motion=motion)["T_in"]
+            smooth = design.values(["T_in"], theta, motion=motion, mu=None)["T_in"]
+            found["T_in"] = found["T_in"] + rough - smooth
         return found
 
-    panels = resolved(loads, design.breaks(motion, () if before is None else before.panels.edges.tolist()))
+    edges = design.edges(["T_in"], motion)
+    panels = resolved(loads, edges if before is None else np.append(edges, before.panels.edges))
     load, M, slope = (panels.values[name] for name in names)
     speed = abs(design.numbers["omega0"])
     drive = panels.integral(load) / design.angle
@@ -183,4 +185,4 @@ def _gradient(design: Turn, fluctuation: float, state: FlywheelMotion) -> dict[s
 
 def _torque(design: Turn, names: list[str], state: FlywheelMotion) -> dict[str, Array]:
     """The derivatives of the torque along the motion."""
-    return design.values(names, state.panels.x.ravel(), state.motion)
+    return design.values(names, state.panels.x.ravel(), motion=state.motion)

@@ -12,7 +12,7 @@ from ...support.answer import Answer
 from ...support.forks import IMPORTS
 from ...support.shown import printed, with_unit
 from ...units.system import Conversion
-from ..turn.turn import MOST_TURNS
+from ..turn.cycle import MOST_TURNS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -19,12 +19,11 @@ from ...mechanism.keywords import with_known_keywords
 from ...mechanism.quantity_units import unit_of, units_of
 from ...mechanism.read import read
 from ...support.answer import Answer
-from ...support.panels import RESOLVED, resolved
+from ...support.panels import RESOLVED, Array, resolved
 from ...support.shown import shown
-from .turn import Turn, extreme, one_turn
+from .turn import Turn, one_turn
 
 ALONG = {"both": 0.0, "Y": 1.0, "X": -1.0}
-POINTS = 8192  # among which the largest force is looked for
 FORCES = ("F_shaking_X", "F_shaking_Y")
 RADIUS = Input("radius", "m", "from the crank centre to the counterweight", TINY, "a length > 0")
 # Of exp(i n theta), of exp(-i n theta), their error, and the largest force under a counterweight.
@@ -71,7 +70,7 @@ def counterweight(
     speed = turn.numbers.get("omega0")
     if not speed:
         raise ValueError("counterweight: omega0 is missing or 0, and a crank at rest shakes nothing")
-    forward, backward, error, peak = _across_kinks(turn) if turn.kinks else _at_equal_steps(turn)
+    forward, backward, error, peak = _harmonics(turn)
     weight = -(forward[1] + ALONG[along] * np.conj(backward[1]))
     before = _shaking(forward[1], backward[1], forward[2], backward[2], peak(0.0))
     after = _shaking(forward[1] + weight, backward[1], forward[2], backward[2], peak(weight))
@@ -94,19 +93,8 @@ def counterweight(
     })  # fmt: skip
 
 
-def _at_equal_steps(turn: Turn) -> Harmonics:
-    """The harmonics of a smooth force, by the fast Fourier transform."""
-    found, error = turn.spectrum(FORCES)
-    X, Y = (found[name] for name in FORCES)
-    forces = turn.samples(FORCES, max(POINTS, 2 * (len(X) - 1)))
-    z = forces["F_shaking_Y"] + 1j * forces["F_shaking_X"]
-    wave = np.exp(2j * pi * np.arange(z.size) / z.size)
-    forward, backward = Y + 1j * X, np.conj(Y) + 1j * np.conj(X)
-    return forward, backward, error, lambda weight: extreme(np.abs(z + weight * wave), 1.0)[0]
-
-
-def _across_kinks(turn: Turn) -> Harmonics:
-    """The harmonics of a force with kinks and jumps, between which panels are."""
+def _harmonics(turn: Turn) -> Harmonics:
+    """The first harmonics of the force, and the largest force under a counterweight."""
     panels = turn.panels(FORCES)
     z = panels.values["F_shaking_Y"] + 1j * panels.values["F_shaking_X"]
     forward, backward = (
@@ -114,11 +102,11 @@ def _across_kinks(turn: Turn) -> Harmonics:
     )
 
     def peak(weight: complex) -> float:
-        def squared(theta: Any) -> dict[str, Any]:
+        def squared(theta: Array, row: Array) -> dict[str, Array]:
             X, Y = (panels.at(theta, panels.values[name]) for name in FORCES)
             return {"square": np.abs(Y + 1j * X + weight * np.exp(1j * theta)) ** 2}
 
-        found = resolved(squared, panels.edges.tolist())
+        found = resolved(squared, panels.edges)
         return float(np.sqrt(found.extreme(found.values["square"], 1.0)[0]))
 
     return forward, backward, RESOLVED * float(np.abs(z).max()), peak

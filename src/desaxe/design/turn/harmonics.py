@@ -1,20 +1,20 @@
 """`harmonics`: the Fourier series of a quantity over the crank angle, at constant speed."""
 
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...mechanism.catalogue import quantity
 from ...mechanism.keywords import with_known_keywords
 from ...mechanism.quantity_units import unit_of
 from ...support.answer import Answer
 from ...support.checks import whole_number
-from ...support.panels import RESOLVED, WEIGHT
-from .turn import MOST, Turn, one_turn
+from ...support.panels import NODES, RESOLVED, WEIGHT, WIDEST, Array, Panels
+from .turn import one_turn
 
 WAVES = 4.0  # rad of the highest wave in a panel of 16 nodes: what Gauss's rule integrates to rounding
+MOST = 2048  # orders
+BLOCK = 64  # panels whose waves are in memory at a time
 
 
 @with_known_keywords
@@ -32,14 +32,11 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
     amplitude, phase   the same as amplitude cos(n theta - phase) [rad]
     mean               over the turn
     remainder          root of the mean square of all higher harmonics: what these orders leave out
-    error              bound of the error of each coefficient: what the last halving of the steps changed, or
-                       how far the panels were refined
-    points             steps of the turn that this took
+    error              bound of the error of each coefficient: how far the panels were refined
+    points             angles that this took
 
-    Equal steps and the fast Fourier transform: for a crank that turns with some margin the error falls
-    geometrically with the steps, towards the change point ever slower. Under a table of a load, Gauss's rule
-    in panels between its kinks and jumps. Raises ValueError where the crank
-    cannot turn fully or a value is missing.
+    Gauss's rule in panels between kinks and jumps, which are halved until the quantity is resolved. Raises
+    ValueError where the crank cannot turn fully or a value is missing.
 
     See docs/choose.md: which call for which question.
 
@@ -51,14 +48,10 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
     quantity(name)
     if name == "status":
         raise ValueError("status is not a real number")
-    orders = whole_number("orders", orders, 0, MOST // 16)
+    orders = whole_number("orders", orders, 0, MOST)
     turn = one_turn("harmonics", inputs, branch)
-    if turn.kinks:
-        c, remainder, error, points = _across_kinks(turn, name, orders)
-    else:
-        found, error = turn.spectrum([name], 4 * (orders + 1))
-        c, points = found[name][: orders + 1], 2 * (len(found[name]) - 1)
-        remainder = float(np.sqrt(2.0 * np.sum(np.abs(found[name][orders + 1 :]) ** 2)))
+    panels = turn.panels([name], widest=min(WIDEST, WAVES / (orders + 1)))
+    c, remainder = _series(panels, panels.values[name], orders)
     scale = np.where(np.arange(orders + 1) == 0, 1.0, 2.0)
     cosine, sine = scale * c.real, -scale * c.imag
     series: dict[str, Any] = {
@@ -69,21 +62,30 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
         "phase": np.arctan2(sine, cosine),
         "mean": float(cosine[0]),
         "remainder": remainder,
-        "error": 2.0 * error,
-        "points": points,
+        "error": 2.0 * RESOLVED * float(np.abs(panels.values[name]).max()),
+        "points": panels.values[name].size,
     }
     own = dict.fromkeys(("cos", "sin", "amplitude", "mean", "remainder", "error"), unit_of(name))
     return Answer(series, {**own, "phase": unit_of("phase")})
 
 
-def _across_kinks(turn: Turn, name: str, orders: int) -> tuple[NDArray[np.complex128], float, float, int]:
-    """Complex coefficients, remainder, their error, and the angles that this took, in panels."""
-    panels = turn.panels([name])
-    widest = WAVES / (orders + 1)
-    edges = [np.linspace(a, b, int(np.ceil((b - a) / widest)) + 1) for a, b in pairwise(panels.edges)]
-    panels = panels.split(np.concatenate(edges).tolist())
-    value, weight = panels.values[name], panels.half * WEIGHT / (2.0 * np.pi)
-    c = np.array([np.sum(weight * value * np.exp(-1j * n * panels.x)) for n in range(orders + 1)])
-    series = c[0].real + 2.0 * sum((c[n] * np.exp(1j * n * panels.x)).real for n in range(1, orders + 1))
-    remainder = float(np.sqrt(np.sum(weight * (value - series) ** 2)))
-    return c, remainder, RESOLVED * float(np.abs(value).max()), value.size
+def _series(panels: Panels, value: Array, orders: int) -> tuple[Array, float]:
+    """The complex coefficients of exp(i n theta), and the root of the mean square of what they leave out."""
+    weight, side = panels.half * WEIGHT / (2.0 * np.pi), int(np.ceil(np.sqrt(orders + 1)))
+    blocks = [slice(k, k + BLOCK) for k in range(0, len(value), BLOCK)]
+
+    def waves(part: slice) -> list[Array]:
+        """exp(i n theta) of n < side, and of the first multiples of side: their products are all of them."""
+        x = panels.x[part].ravel()
+        return [np.exp(1j * np.multiply.outer(step * np.arange(side), x)) for step in (1, side)]
+
+    c, series = np.zeros((side, side), complex), np.empty_like(value)
+    for part in blocks:
+        fine, coarse = waves(part)
+        c += ((weight * value)[part].ravel() * coarse.conj()) @ fine.conj().T
+    c.reshape(-1)[orders + 1 :] = 0.0
+    for part in blocks:
+        fine, coarse = waves(part)
+        series[part] = (2.0 * ((c @ fine) * coarse).sum(0).real - c[0, 0].real).reshape(-1, NODES)
+    remainder = np.sqrt(np.sum(weight * (value - series) ** 2))
+    return c.reshape(-1)[: orders + 1], float(remainder)
