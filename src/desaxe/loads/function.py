@@ -43,8 +43,9 @@ class FunctionOverTheta(OverTheta):
         with IMPORTS:
             import numpy as np
 
-        angles = self.every * ((np.arange(PROBES) + 0.5) * GOLDEN % 1.0)
-        values = called(self.function, angles + self.every * np.array([[-1.0], [0.0], [1.0]]), "the load")
+        angles = self.every * ((np.arange(PROBES) + 0.25) * GOLDEN % 1.0)
+        shifted = angles + self.every * np.array([[0.0], [-1.0], [1.0]])
+        values = called(self.function, shifted.ravel(), "the load").reshape(shifted.shape)
         return bool(np.ptp(values, axis=0).max() <= REPEATED * np.abs(values).max())
 
     @property

@@ -112,6 +112,21 @@ def test_a_counterweight_is_a_crank_with_its_mass_on_the_other_side():
     assert balanced["product"] == pytest.approx(0.0, abs=1e-15)
 
 
+@pytest.mark.parametrize("period", [1, 2])
+def test_a_load_between_slider_and_frame_does_not_shake_the_foundation(period):
+    """A compressor: half of what goes to and fro and all that turns, opposite the crank."""
+    machine = {"ec": 0.0, "AB": 0.03, "BC": 0.12, "omega0": 100.0, "m_slider": 0.9, "m_rod": 0.6}
+    gas = dx.over_theta([0.0, 1.0, 3.0], [0.0, -900.0, -50.0], "linear", period=2 * np.pi * period)
+    found = dx.counterweight(radius=0.05, F_Y=gas, **machine)
+    assert found["mass"] * 0.05 == pytest.approx((0.5 * (0.9 + 0.3) + 0.3) * 0.03, rel=1e-12)
+    assert found["angle"] == pytest.approx(np.pi, abs=1e-12)
+    # Masses alone leave what the load adds from outside to the first harmonic of the shaking force.
+    if period == 1:
+        outside = dx.counterweight(F_Y=gas, loads=True, **machine)["before"]["Y"]
+        force = gas(ANGLES) + dx.evaluate("F_shaking_Y", theta=ANGLES, **machine)
+        assert outside == pytest.approx(abs(first(force)), rel=1e-5)
+
+
 @pytest.mark.parametrize("fluctuation", [0.02, 0.2])
 def test_a_flywheel_in_a_simulated_motion(fluctuation):
     def load(theta):

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from ...evaluation.extremes import check_range
+from ...loads.resolve import VARIABLE
 from ...mechanism.inputs import TINY, Input
 from ...mechanism.keywords import with_known_keywords
 from ...mechanism.quantity_units import unit_of, units_of
@@ -32,13 +33,15 @@ Harmonics = tuple[Any, Any, float, Callable[[complex], float]]
 
 @with_known_keywords
 def counterweight(
-    *, along: str = "both", radius: Any = None, branch: int = 1, **inputs: Any
+    *, along: str = "both", radius: Any = None, loads: bool = False, branch: int = 1, **inputs: Any
 ) -> dict[str, Any]:
     """The counterweight on the crank that balances the first harmonic of the shaking force best.
 
     along   "both": the largest first-harmonic force in any direction is made as small as possible, which
             leaves one of constant size that turns against the crank; "Y" or "X": none is left along that axis
     radius  of the counterweight's centre of mass [m], to compute its mass
+    loads   False: F_X and F_Y act between slider and frame, as gas in a cylinder does, and do not shake the
+            foundation; True: they come from outside of the machine, and do
     inputs  of one design at constant speed, with masses, as in `evaluate`
 
     Returns a dict:
@@ -66,6 +69,8 @@ def counterweight(
     """
     if not isinstance(along, str) or along not in ALONG:
         raise ValueError(f"along = {shown(along)}: it is one of {', '.join(ALONG)}")
+    if not loads:
+        inputs = {name: value for name, value in inputs.items() if name not in VARIABLE}
     turn = one_turn("counterweight", inputs, branch)
     speed = turn.numbers.get("omega0")
     if not speed:

@@ -99,7 +99,7 @@ class Cycle:
                 continue
             free[row, k] = False
             names = [sensitivity(kept[0], "theta"), *(sensitivity(name, p) for name in kept for p in LENGTHS)]
-            at = {name: length[row] for name, length in lengths.items()}
+            at: dict[str, Any] = {name: length[row] for name, length in lengths.items()}
             by = evaluate(
                 list(dict.fromkeys(names)), theta=angles[row, k], branch=self.branch, omega0=1.0, **at
             )
