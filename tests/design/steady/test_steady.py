@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.loads.angles import kinks_between
+from desaxe.loads.angles import meeting_angles
 from tests.design.steady.free_bodies import FreeBodies, turn
 from tests.effort import cases
 
@@ -98,9 +98,9 @@ def edges_of(call, found):
     """Even edges and the kinks of the load over the period, in the way of turning."""
     way, period = np.sign(found["theta"][-1]), abs(found["theta"][-1])
     loads = [call["F_Y"]] if callable(call["F_Y"]) else []
-    lengths = [call[n] for n in ("ec", "AB", "BC")]
-    kinks = kinks_between(loads, 0.0, period, lengths, call["branch"], smooth=True)
-    kinks = [k if way > 0 else k - period for k in kinks]
+    lengths = [np.array([call[n]]) for n in ("ec", "AB", "BC")]
+    kinks = meeting_angles(loads, period, lengths, call["branch"])
+    kinks = kinks[np.isfinite(kinks)] - (0.0 if way > 0 else period)
     every = np.unique([*turn(round(period / (2 * pi)), way), *kinks])
     return every[np.append(True, np.diff(every) > 1e-12)][:: int(way)]
 
