@@ -81,7 +81,7 @@ class Cycle:
 
     @computed_once
     def _moving(self) -> list[tuple[tuple[str, ...], Array]]:
-        """What keeps its value where a quantity may jump at an angle that moves; these angles, in rows."""
+        """Quantities that keep their value at angles of jumps, which move; the angles, in rows."""
         loads = [load for load in self.loads.values() if isinstance(load, OverY) and load.jumps]
         meeting = [(load.kept, crossings(load, load.jumps, self.lengths, self.branch)) for load in loads]
         groups = [(("Y_wrt_theta",), dead_centres(self.lengths)), *meeting]
