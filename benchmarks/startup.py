@@ -40,9 +40,7 @@ CALLS = {
         'dx.simulate(torque=1.0, t_end=0.1, wrt=["AB", "m_slider"], **MASSES)'
     ),
     "`simulate`, 20 motions": "dx.simulate(torque=np.linspace(1.0, 2.0, 20), t_end=0.1, **MASSES)",
-    "`tolerance` of a peak, without Sobol indices": (
-        'dx.tolerance(("absmax", "a_C"), ec=dx.plus_minus(0.01, 0.001), sobol=0, **CRANK)'
-    ),
+    "`tolerance` of a peak": ('dx.tolerance(("absmax", "a_C"), ec=dx.plus_minus(0.01, 0.001), **CRANK)'),
 }
 
 

@@ -47,7 +47,7 @@ CALLS = {
     "steady": lambda load, _: dx.steady(torque=MOTOR, I_crank=1.0, F_Y=load, **DESIGN),
     "simulate": lambda load, _: dx.simulate(torque=1.0, t_end=0.01, F_Y=load, **MOVED),
     "enclose": lambda load, _: dx.enclose("T_in", theta=1.0, F_Y=load, **DESIGN),
-    "tolerance": lambda load, _: dx.tolerance("T_in", theta=1.0, sobol=0, samples=9, F_Y=load, **ROUGH),
+    "tolerance": lambda load, _: dx.tolerance("T_in", theta=1.0, samples=9, F_Y=load, **ROUGH),
     "optimize": lambda load, _: dx.optimize(
         minimize=("absmax", "T_in"), over={"ec": (0.0, 0.02)}, starts=1, F_Y=load, **FREE
     ),

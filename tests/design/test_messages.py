@@ -129,8 +129,6 @@ TABLE = [  # a call and what is good for it; what is changed, the error and its 
         ({"AB": np.array(TWO)}, TypeError, "AB = .*tolerance expects a number, a value and tol"),
         ({"AC": 1.0}, TypeError, "no input 'AC'"),
         ({"distribution": "flat"}, ValueError, "distribution = 'flat'"),
-        ({"sobol": 100}, ValueError, "sobol = 100: expected a power of two"),
-        ({"sobol": 4.0}, ValueError, "sobol = 4.0: expected a power of two"),
         ({"samples": 1}, ValueError, "samples = 1"),
         ({"samples": "many"}, ValueError, "samples = 'many': a whole number"),
         ({"sigmas": NAN}, ValueError, "sigmas = nan"),
@@ -222,20 +220,9 @@ def test_a_seed_is_a_whole_number(call, given, inputs, seed):
         call(*given, seed=seed, **inputs)
 
 
-@pytest.mark.parametrize(
-    ("package", "call", "said"),
-    [
-        ("scipy", "dx.optimize", "optimize needs scipy"),
-        (
-            "SALib",
-            "dx.tolerance('margin', ec='10 mm +- 1 mm', AB=0.1, BC='0.4 m +- 1 mm', samples=9)",
-            "sobol=0 leaves them out",
-        ),
-    ],
-)
-def test_without_a_package_one_line_says_what_to_install(package, call, said):
-    code = f"import sys; sys.modules[{package!r}] = None; import desaxe as dx; {call}"
+def test_without_a_package_one_line_says_what_to_install():
+    code = "import sys; sys.modules['scipy'] = None; import desaxe as dx; dx.optimize"
     run = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True)
     last = run.stderr.strip().splitlines()[-1]
-    assert said in last
+    assert "optimize needs scipy" in last
     assert last.endswith("python -m pip install 'desaxe[design]'")

@@ -183,14 +183,14 @@ def tolerance(truth, draw, folder):
     theta = float(angles_of(truth, draw, 1)[0])
     near_AB = dx.plus_minus(truth.design["AB"], 1e-9)
     inputs = {**given(truth), "AB": near_AB}
-    found = dx.tolerance("T_in", samples=16, sobol=0, theta=theta, **inputs)
+    found = dx.tolerance("T_in", samples=16, theta=theta, **inputs)
     assert found["gradient"]["AB"] == pytest.approx(float(truth.by("AB", theta)), rel=1e-8)
     assert found["first_order"]["mean"] == pytest.approx(truth.torque(theta), rel=1e-9, abs=1e-12)
 
 
 def tolerance_of_a_peak(truth, draw, folder):
     inputs = {**given(truth), "AB": dx.plus_minus(truth.design["AB"], 1e-9)}
-    found = dx.tolerance(("absmax", "T_in"), samples=16, sobol=0, **inputs)
+    found = dx.tolerance(("absmax", "T_in"), samples=16, **inputs)
     assert found["value"] == pytest.approx(truth.largest(), rel=1e-9)
     assert found["gradient"]["AB"] == pytest.approx(
         dx.peak("T_in", **given(truth))["gradient"]["AB"], rel=1e-9

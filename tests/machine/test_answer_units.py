@@ -29,7 +29,7 @@ CALLS = {
         "keep": {"margin": (0.1, None)},
     },
     "synthesize": {"stroke": 0.09, "time_ratio": 1.1, "max_pressure_angle": 0.01},
-    "tolerance": {"name": ("absmax", "T_in"), "AB": dx.plus_minus(0.05, 1e-4), "samples": 64, "sobol": 0},
+    "tolerance": {"name": ("absmax", "T_in"), "AB": dx.plus_minus(0.05, 1e-4), "samples": 64},
     "harmonics": {"name": "T_in"},
     "counterweight": {"radius": 0.05},
     "drive": {},

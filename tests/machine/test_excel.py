@@ -55,7 +55,7 @@ def test_answers_in_the_units_of_a_machine(tmp_path):
     assert drive["torque_peak"][1] == "N*m"
     assert drive["ec"] == (LOADED.in_units()["ec"], "mm")
     assert drive["gradient torque_rms ec"][1] == "N*m/mm"
-    spread = LOADED.tolerance("a_C", theta=60, ec="10 +- 0.1", samples=100, sobol=0)
+    spread = LOADED.tolerance("a_C", theta=60, ec="10 +- 0.1", samples=100)
     found = numbers(dx.to_excel(spread, tmp_path / "c.xlsx"))
     assert found["first_order std"] == (pytest.approx(spread["first_order"]["std"]), "mm/s^2")
     head, *rows = sheets(dx.to_excel(PRESS.evaluate(["a_C"], theta=[0, 90]), tmp_path / "d.xlsx"))["values"]

@@ -25,7 +25,7 @@ CALLS = {
     "simulate": {"torque": 50.0, "t_end": 0.01, "I_crank": 1.0, "names": ["a_C"]},
     "optimize": {"maximize": "time_ratio", "over": {"ec": (0.0, 0.1)}, "keep": {"margin": (0.02, None)}},
     "design_map": {"names": "stroke", "ec": [0.0, 0.02]},
-    "tolerance": {"name": "stroke", "AB": dx.plus_minus(0.05, 0.0001), "samples": 100, "sobol": 0},
+    "tolerance": {"name": "stroke", "AB": dx.plus_minus(0.05, 0.0001), "samples": 100},
     "enclose": {"name": "Y", "theta": dx.between(1.0, 1.01)},
     "harmonics": {"name": "F_shaking_Y", "orders": 2},
     "counterweight": {"radius": 0.03},

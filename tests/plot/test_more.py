@@ -48,7 +48,7 @@ def test_bars_of_a_grid_and_of_tolerances():
     changes = {"ec": 1e-3, "BC": -2e-3}
     from_grid = ends(tornado(point, changes, name="V_C"))
     pairs = {"ec": dx.plus_minus(0.1, 1e-3), "BC": dx.plus_minus(0.35, 2e-3)}
-    rough = dx.tolerance("V_C", theta=1.0, AB=0.125, omega0=157.08, sobol=0, **pairs)
+    rough = dx.tolerance("V_C", theta=1.0, AB=0.125, omega0=157.08, **pairs)
     from_dict = ends(tornado(rough, changes, name="V_C"))
     value, step = point.V_C.item(), 1e-3 * point.V_C_wrt_ec.item()
     assert dict(from_grid)["ec ± 0.001 m"] == pytest.approx((value - step, value + step))

@@ -117,7 +117,7 @@ def calls() -> dict[str, Call]:
         "tolerance": Call(
             dx.tolerance,
             ("stroke",),
-            {"ec": dx.plus_minus(0.02, 1e-4), "AB": 0.04, "BC": 0.064, "sobol": 0, "samples": 50},
+            {"ec": dx.plus_minus(0.02, 1e-4), "AB": 0.04, "BC": 0.064, "samples": 50},
             ("seed", "sigmas", "distribution", "branch"),
         ),
         "simulate": Call(

@@ -239,7 +239,7 @@ def test_progress_bar(monkeypatch):
         ),
         (
             "desaxe.design.tolerance.tolerance",
-            lambda: dx.tolerance("stroke", ec="10 mm ± 1 mm", AB=0.1, BC=0.3, sobol=0),
+            lambda: dx.tolerance("stroke", ec="10 mm ± 1 mm", AB=0.1, BC=0.3),
             "10000 samples",
         ),
     ],

@@ -22,7 +22,6 @@ EXTRAS = {
     "xlsxwriter": "excel",
     "fmpy": "fmu",
     "scipy": "simulate",
-    "SALib": "design",
     "flint": "rigorous",
     "python-flint": "rigorous",
     "mpmath": "rigorous",

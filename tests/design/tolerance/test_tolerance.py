@@ -1,4 +1,4 @@
-"""Scatter by derivatives, Monte Carlo, Sobol's indices and enclosures, against each other and known cases."""
+"""Scatter by derivatives, Monte Carlo and enclosures, against each other and known cases."""
 
 import math
 import pickle
@@ -34,21 +34,19 @@ def test_it_prints_three_lines_and_the_rest_on_request(point):
     assert causes.startswith(f"driven by {first} {100 * share:.0f} %")
     assert all(key in point.report() for key in point)
     assert repr(pickle.loads(pickle.dumps(point))) == repr(point)
-    peak = dx.tolerance(("absmax", "a_C"), ec="10 mm ± 1 mm", AB=0.1, BC=0.3, omega0=10.0, sobol=0, samples=9)
+    peak = dx.tolerance(("absmax", "a_C"), ec="10 mm ± 1 mm", AB=0.1, BC=0.3, omega0=10.0, samples=9)
     assert repr(peak).startswith("absmax of a_C is 1")
     machine = dx.Machine(ec=100, AB=125, BC=350, omega0=157.08, units="mm")
-    shown = machine.tolerance("a_C", theta=1.0, AB="125 mm ± 0.1 mm", sobol=0, samples=99)
+    shown = machine.tolerance("a_C", theta=1.0, AB="125 mm ± 0.1 mm", samples=99)
     assert " mm/s^2 with" in repr(shown)
-    blocked = dx.tolerance("stroke", ec="10 mm ± 0.1 mm", AB=0.3, BC=0.1, sobol=0, samples=99)
+    blocked = dx.tolerance("stroke", ec="10 mm ± 0.1 mm", AB=0.3, BC=0.1, samples=99)
     assert "nan m with every input at its mean; status 1: no value at the means" in repr(blocked)
 
 
 def test_the_ways_agree(point):
     assert abs(point["agreement"]["mean"]) < 4
     assert abs(point["agreement"]["std"]) < 4
-    assert point["agreement"]["contributions"] < 0.02
-    assert abs(point["agreement"]["linearity"]) < 1e-3
-    assert point["second_order"]["exact"]
+    assert point["first_order"]["std"] == pytest.approx(point["monte_carlo"]["std"], rel=0.01)
     worst, drawn = point["worst_case"], point["monte_carlo"]
     assert worst["guaranteed"]
     assert worst["lower"] < drawn["percentiles"][0.135] < drawn["percentiles"][99.865] < worst["upper"]
@@ -60,11 +58,11 @@ def test_what_is_guaranteed_and_what_is_not(point):
     worst = point["worst_case"]
     assert (worst["guaranteed"], worst["sigmas"]) == (True, 3.0)
     assert worst["outside"] < 1e-3
-    wide = dx.tolerance("a_C", sigmas=1.0, sobol=0, samples=2000, **{**POINT, "AB": 0.125, "BC": 0.35})
+    wide = dx.tolerance("a_C", sigmas=1.0, samples=2000, **{**POINT, "AB": 0.125, "BC": 0.35})
     assert wide["worst_case"]["sigmas"] == 1.0
     assert wide["worst_case"]["outside"] == pytest.approx(2 * stats.norm.sf(1.0), abs=0.04)
     assert wide["monte_carlo"]["largest"] > wide["worst_case"]["upper"]
-    even = dx.tolerance("a_C", distribution="uniform", sobol=0, samples=2000, **POINT)
+    even = dx.tolerance("a_C", distribution="uniform", samples=2000, **POINT)
     assert (even["worst_case"]["sigmas"], even["worst_case"]["outside"]) == (None, 0.0)
 
 
@@ -75,7 +73,7 @@ def test_a_range_and_a_tolerance_are_the_same_in_both_calls():
     boxes = [dx.enclose("a_C", ec=ec, **rest) for ec in given]
     assert all(box == boxes[0] for box in boxes)
     texts = ["10 mm +- 0.1", "10 mm ± 0.1 mm", "10 mm +- 1 %"]
-    scatter = [dx.tolerance("a_C", ec=ec, samples=10, sobol=0, **rest) for ec in (*given, *texts)]
+    scatter = [dx.tolerance("a_C", ec=ec, samples=10, **rest) for ec in (*given, *texts)]
     assert all(found == scatter[0] for found in scatter)
     worst = scatter[0]["worst_case"]
     assert (worst["lower"], worst["upper"]) == (boxes[0]["lower"], boxes[0]["upper"])
@@ -111,66 +109,50 @@ def test_values_by_hand(point):
     """With differences of evaluate alone."""
     centre = {"theta": 1.0, "ec": 0.1, "AB": 0.125, "BC": 0.35, "omega0": 157.08}
     std = {"ec": 1e-3 / 3, "AB": 1e-4 / 3, "BC": 1e-3 / 3}
-    variance, bend = 0.0, 0.0
+    variance = 0.0
     for name, s in std.items():
         up, down = (dx.evaluate("a_C", **{**centre, name: centre[name] + side * 1e-5}) for side in (1, -1))
-        middle = dx.evaluate("a_C", **centre)
         assert point["gradient"][name] == pytest.approx((up - down) / 2e-5, rel=1e-4)
         variance += ((up - down) / 2e-5 * s) ** 2
-        bend += 0.5 * (up - 2 * middle + down) / 1e-10 * s**2
-    assert point["value"] == middle
+    assert point["value"] == dx.evaluate("a_C", **centre)
     assert point["first_order"]["std"] == pytest.approx(math.sqrt(variance), rel=1e-4)
-    assert point["second_order"]["mean"] - middle == pytest.approx(bend, rel=1e-2)
     assert list(point["contributions"]) == ["ec", "BC", "AB"]
     assert sum(point["contributions"].values()) == pytest.approx(1.0)
 
 
 def test_a_curved_quantity():
-    """Y's slope by theta is 0 at the dead centre: the first order sees nothing, the second all.
+    """Y's slope by theta is 0 at the dead centre: the first order sees nothing, and says so.
 
     Y - Y_o = -k theta^2/2: mean -k s^2/2, standard deviation k s^2/sqrt(2) of a normal theta.
     """
-    found = dx.tolerance("Y", theta=plus_minus(0.0, 0.03), ec=0.0, AB=0.1, BC=0.4, samples=200_000, sobol=0)
+    found = dx.tolerance("Y", theta=plus_minus(0.0, 0.03), ec=0.0, AB=0.1, BC=0.4, samples=200_000)
     k, s = 0.1 * (1 + 0.25), 0.01
     assert found["first_order"]["std"] == 0.0
-    assert found["second_order"]["mean"] == pytest.approx(0.5 - k * s**2 / 2, rel=1e-12)
-    assert found["second_order"]["std"] == pytest.approx(k * s**2 / math.sqrt(2), rel=1e-9)
-    assert abs(found["agreement"]["mean"]) < 4
-    assert found["monte_carlo"]["std"] == pytest.approx(found["second_order"]["std"], rel=0.02)
+    drawn = found["monte_carlo"]
+    assert abs(drawn["mean"] - (0.5 - k * s**2 / 2)) < 4 * drawn["mean_error"]
+    assert drawn["std"] == pytest.approx(k * s**2 / math.sqrt(2), rel=0.02)
+    assert found["agreement"]["mean"] < -100
+    assert "(0 to first order: see monte_carlo), 95 %" in repr(found)
+    assert "driven by nothing; theta 0 to first order: see monte_carlo" in repr(found)
     assert found["monte_carlo"]["largest"] <= 0.5
 
 
 def test_uniform_and_given_distributions():
     """The margin is linear: its variance is the sum of theirs."""
     given = {"ec": stats.gamma(4.0, scale=0.001), "AB": plus_minus(0.1, 0.003), "BC": 0.4}
-    found = dx.tolerance("margin", distribution="uniform", sobol=0, samples=50_000, **given)
+    found = dx.tolerance("margin", distribution="uniform", samples=50_000, **given)
     wanted = math.sqrt(4.0 * 0.001**2 + 0.003**2 / 3)
     assert found["first_order"]["std"] == pytest.approx(wanted, rel=1e-12)
-    assert found["second_order"] == {
-        "mean": pytest.approx(0.296),
-        "std": pytest.approx(wanted),
-        "exact": False,
-    }
+    assert found["first_order"]["mean"] == pytest.approx(0.296)
     assert found["monte_carlo"]["std"] == pytest.approx(wanted, rel=0.02)
     assert found["worst_case"] is None
-    uniform = dx.tolerance(
-        "margin", distribution="uniform", ec=0.01, AB=plus_minus(0.1, 0.003), BC=0.4, sobol=0
-    )
+    uniform = dx.tolerance("margin", distribution="uniform", ec=0.01, AB=plus_minus(0.1, 0.003), BC=0.4)
     assert uniform["monte_carlo"]["largest"] <= uniform["worst_case"]["upper"] == pytest.approx(0.293)
 
 
 def test_of_a_design_and_of_forces():
     stroke = dx.tolerance("stroke", ec=plus_minus(0.02, 1e-3), AB=plus_minus(0.04, 5e-5), BC=0.064)
     assert abs(stroke["agreement"]["std"]) < 4
-    assert stroke["agreement"]["contributions"] < 0.02
-    h = 1e-5
-    at = [dx.events(ec=0.02 + d, AB=0.04, BC=0.064)["stroke"] for d in (-h, 0, h)]
-    bend = (at[0] - 2 * at[1] + at[2]) / h**2
-    ab = (
-        dx.tolerance("stroke", ec=plus_minus(0.02, 1e-3), AB=0.04, BC=0.064, sobol=0)["second_order"]["mean"]
-        - at[1]
-    )
-    assert ab == pytest.approx(0.5 * bend * (1e-3 / 3) ** 2, rel=1e-4)
     press = {"AB": plus_minus(0.04, 5e-5), "BC": 0.064, "omega0": 100.0, "m_slider": plus_minus(0.8, 0.05)}
     torque = dx.tolerance("T_in", theta=1.0, ec=plus_minus(0.01, 1e-3), **press)
     assert abs(torque["agreement"]["std"]) < 4
@@ -187,9 +169,7 @@ def test_of_a_design_and_of_forces():
 
 
 def test_samples_without_a_value_are_counted():
-    found = dx.tolerance(
-        "Y", theta=math.pi / 2, ec=plus_minus(0.22, 0.03), AB=0.125, BC=0.35, sobol=64, samples=2000
-    )
+    found = dx.tolerance("Y", theta=math.pi / 2, ec=plus_minus(0.22, 0.03), AB=0.125, BC=0.35, samples=2000)
     assert found["status"] == 2
     share = stats.norm.sf(0.225, 0.22, 0.01)
     assert found["monte_carlo"]["infeasible"] == pytest.approx(share, abs=0.04)
@@ -204,13 +184,12 @@ def test_samples_without_a_value_are_counted():
         ("time_ratio", 0.05, False),
     ],
 )
-def test_a_kink_has_no_second_derivative(name, ec, kink):
+def test_a_kink_is_told(name, ec, kink):
     """In line the time ratio is 1 on both sides of a kink; its worst case is at the ends all the same."""
     lengths = {"AB": 0.125, "BC": 0.35}
     speed = {"omega0": 157.08} if isinstance(name, tuple) else {}
-    found = dx.tolerance(name, ec=plus_minus(ec, 3e-3), samples=500, sobol=0, **lengths, **speed)
+    found = dx.tolerance(name, ec=plus_minus(ec, 3e-3), samples=500, **lengths, **speed)
     assert found["status"] == (3 if kink else 0)
-    assert np.isnan(found["second_order"]["std"]) == np.isnan(found["agreement"]["std"]) == kink
     assert np.isfinite(found["monte_carlo"]["std"])
     if name == "time_ratio":
         end = dx.events(ec=ec + 3e-3, **lengths)["time_ratio"]
@@ -245,7 +224,7 @@ def test_the_reason_is_the_right_one(what, monkeypatch):
         return {measures[0]: Peak(value(ec), {"ec": slope(ec)})}
 
     monkeypatch.setattr("desaxe.design.tolerance.function.measured", measured)
-    found = dx.tolerance("stroke", ec=plus_minus(0.1, 1e-3), AB=0.125, BC=0.35, samples=50, sobol=0)
+    found = dx.tolerance("stroke", ec=plus_minus(0.1, 1e-3), AB=0.125, BC=0.35, samples=50)
     assert found["status"] == status
 
 
@@ -259,18 +238,15 @@ class Peak(NamedTuple):
 def test_a_peak_at_a_limit_angle_has_no_derivative():
     rocker = {"AB": 0.125, "BC": 0.35, "theta": 1.0}
     ec = plus_minus(0.3, 1e-4)
-    found = dx.tolerance(("max", "phi"), ec=ec, AB=0.125, BC=0.35, samples=50, sobol=0)
+    found = dx.tolerance(("max", "phi"), ec=ec, AB=0.125, BC=0.35, samples=50)
     assert dx.peak("phi", kind="max", ec=0.3, AB=0.125, BC=0.35)["status"] == 2
     assert found["status"] == 5
-    assert dx.tolerance("phi", ec=plus_minus(0.2, 1e-4), samples=50, sobol=0, **rocker)["status"] == 0
+    assert dx.tolerance("phi", ec=plus_minus(0.2, 1e-4), samples=50, **rocker)["status"] == 0
 
 
 def test_nothing_is_told_of_what_has_no_value():
-    found = dx.tolerance(
-        "Y", theta=math.pi / 2, ec=plus_minus(0.3, 1e-3), AB=0.125, BC=0.35, sobol=8, samples=10
-    )
+    found = dx.tolerance("Y", theta=math.pi / 2, ec=plus_minus(0.3, 1e-3), AB=0.125, BC=0.35, samples=10)
     assert (found["status"], found["monte_carlo"]["infeasible"]) == (1, 1.0)
-    assert np.isnan(found["sobol"]["ec"]["first"])
 
 
 def test_one_input_and_seeds():
@@ -278,14 +254,13 @@ def test_one_input_and_seeds():
     first, again, other = (dx.tolerance("Y", samples=100, seed=seed, **one) for seed in (0, 0, 1))
     assert first == again
     assert first["monte_carlo"]["mean"] != other["monte_carlo"]["mean"]
-    assert first["sobol"]["ec"]["total"] == 1.0
 
 
 def test_an_input_that_a_quantity_does_not_depend_on_counts_for_nothing():
     varied = POINT | {"m_slider": plus_minus(1.0, 0.1)}
-    with_mass = dx.tolerance("a_C", samples=200, sobol=0, **varied)
+    with_mass = dx.tolerance("a_C", samples=200, **varied)
     assert with_mass["gradient"].pop("m_slider") == with_mass["contributions"].pop("m_slider") == 0.0
-    without = dx.tolerance("a_C", samples=200, sobol=0, **POINT)
+    without = dx.tolerance("a_C", samples=200, **POINT)
     for key in ("value", "gradient", "contributions", "worst_case"):
         assert with_mass[key] == without[key]
     alone = {name: value for name, value in varied.items() if name in ("theta", "omega0")}

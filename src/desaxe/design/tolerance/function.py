@@ -1,4 +1,4 @@
-"""A quantity as a function of the inputs that vary: values, exact slopes, second derivatives, smoothness."""
+"""A quantity as a function of the inputs that vary: values, exact slopes, whether it is smooth."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -46,19 +46,6 @@ class SampledQuantity(NamedTuple):
         size = len(next(iter(columns.values())))
         return np.stack([np.broadcast_to(gradient.get(p, 0.0), (size,)) for p in self.varying], -1)
 
-    def bends(self, centre: Mapping[str, Any], beside: "Beside") -> tuple[Array, bool]:
-        """The second derivatives at a point (NaN where undefined), and a flag: all are exact."""
-        n = len(self.varying)
-        pairs = [(i, j) for i in range(n) for j in range(i, n)]
-        names = [sensitivity(str(self.measure), self.varying[i], self.varying[j]) for i, j in pairs]
-        if not (self.at_point and all(has(name, self.state) for name in names)):
-            return beside.bends(), False
-        bends = np.empty((n, n))
-        found = evaluate(names, branch=self.branch, **self.fixed, **centre)
-        for (i, j), name in zip(pairs, names, strict=True):
-            bends[i, j] = bends[j, i] = found[name]
-        return bends, True
-
     def beside(self, centre: Mapping[str, Any], steps: Array) -> "Beside":
         """Values and slopes up to two steps beside a point, along each input."""
         n = len(self.varying)
@@ -79,19 +66,7 @@ class Beside(NamedTuple):
     values: Array
     slopes: Array
 
-    def bends(self) -> Array:
-        """Second derivatives by differences of the exact first ones; NaN across a kink."""
-        near, far = (
-            (self.slopes[:, 2 + k] - self.slopes[:, 2 - k]) / (2.0 * k * self.steps)[:, None] for k in (1, 2)
-        )
-        near, far = 0.5 * (near + near.T), 0.5 * (far + far.T)
-        change = float(np.abs(self.slopes * self.steps).max())
-        # Across a kink a difference over twice the steps is half as large.
-        if (np.abs(near - far) * np.outer(self.steps, self.steps) > KINK * change).any():
-            near[:] = np.nan
-        return near
-
-    def status(self, bends: Array) -> ToleranceStatus:
+    def status(self) -> ToleranceStatus:
         """The status of the function here: smooth, or the reason why it is not.
 
         Where it has slopes its value changes as they say, across a kink too; if not, it jumps.
@@ -101,6 +76,13 @@ class Beside(NamedTuple):
         along = np.einsum("iki->ik", self.slopes) * self.steps[:, None]
         missed = np.abs(np.diff(self.values) - 0.5 * (along[:, 1:] + along[:, :-1]))
         allowed = np.abs(np.diff(along)) + KINK * np.abs(along).max(axis=1, keepdims=True)
-        if (missed > allowed + ROUNDING * np.abs(self.values).max()).any():
+        rounding = ROUNDING * np.abs(self.values).max()
+        if (missed > allowed + rounding).any():
             return ToleranceStatus.JUMP
-        return ToleranceStatus.KINK if np.isnan(bends).any() else ToleranceStatus.OK
+        return ToleranceStatus.KINK if self._has_kink(rounding) else ToleranceStatus.OK
+
+    def _has_kink(self, rounding: float) -> bool:
+        """True if differences of the slopes over twice the steps are other quotients: half, across a kink."""
+        near, far = (self.slopes[:, 2 + k] - self.slopes[:, 2 - k] for k in (1, 2))
+        apart = np.abs(near - 0.5 * far) * self.steps
+        return bool((apart > 2.0 * KINK * np.abs(self.slopes * self.steps).max() + rounding).any())

@@ -11,6 +11,7 @@ from ...support.shown import with_unit
 SCATTER = ("mean", "std", "mean_error", "std_error", "least", "largest", "percentiles")
 SHOWN = 4  # inputs in the line of what drives the scatter
 LEAST = 0.005  # of the variance: a smaller share is not listed
+UNSEEN = "0 to first order: see monte_carlo"
 
 
 class Tolerance(Answer):
@@ -35,7 +36,7 @@ class Tolerance(Answer):
         unit = with_unit("", self.unit)
         ends = list(drawn["percentiles"].values())
         spread = f"{self.name} scatters by a standard deviation of {drawn['std']:.4g}{unit}"
-        spread += f" ({first['std']:.4g} by derivatives)"
+        spread += f" ({first['std']:.4g} by derivatives)" if first["std"] else f" ({UNSEEN})"
         if ends:
             spread += f", 95 % lie in {ends[1]:.6g} ... {ends[3]:.6g}"
         told = f"; status {self['status']}: {ToleranceStatus(self['status']).words}" if self["status"] else ""
@@ -52,7 +53,9 @@ class Tolerance(Answer):
         listed = [f"{name} {100 * share:.0f} %" for name, share in list(shares.items())[:SHOWN]]
         rest = len(self["contributions"]) - len(listed)
         more = f" and {rest} more" if rest and listed else ""
-        return f"driven by {', '.join(listed) or 'nothing to first order'}{more}; report() has everything"
+        flat = ", ".join(name for name, slope in self["gradient"].items() if slope == 0.0)
+        unseen = f"; {flat} {UNSEEN}" if flat else ""
+        return f"driven by {', '.join(listed) or 'nothing'}{more}{unseen}; report() has everything"
 
     def report(self) -> str:
         """Every key of the result, a line each."""
@@ -66,6 +69,6 @@ def _units(name: Any, found: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "value": own,
         "gradient": slopes_of(name, found["gradient"]),
-        **dict.fromkeys(("first_order", "second_order", "monte_carlo"), scatter),
+        **dict.fromkeys(("first_order", "monte_carlo"), scatter),
         "worst_case": dict.fromkeys(("lower", "upper"), own),
     }

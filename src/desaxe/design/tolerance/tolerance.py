@@ -1,4 +1,4 @@
-"""`tolerance`: the scatter of a quantity whose inputs have tolerances, by four independent methods."""
+"""`tolerance`: the scatter of a quantity whose inputs have tolerances, by derivatives, samples and ranges."""
 
 from collections.abc import Mapping, Sequence
 from itertools import product
@@ -15,7 +15,6 @@ from ...mechanism.ranges import Between
 from ...mechanism.status import ToleranceStatus
 from ...runtime.request import as_number, check_common
 from ...support.checks import whole_number
-from ...support.extras import needed
 from ...support.forks import IMPORTS, imported
 from ...support.progress import Steps, progress_bar
 from ...support.shown import shown
@@ -25,14 +24,11 @@ from .scatter import Tolerance
 from .uncertain import DISTRIBUTIONS, Array, Inexact, read
 
 BLOCK = 65536  # samples at a time
-STEP = (
-    1e-3  # of a standard deviation or so: differences of exact gradients, where these are not derived again
-)
+STEP = 1e-3  # of a standard deviation or so: how far beside the means it is looked for kinks and jumps
 PERCENTS = (0.135, 2.5, 50.0, 97.5, 99.865)
 BOXES = 2000  # of an enclosure
 MOST_CORNERED = 10  # inputs
-MOST_SAMPLES, MOST_BASE = 10**8, 2**20
-UNSEEDED = 2**32  # for a seed of 0, which SALib takes for none when it resamples
+MOST_SAMPLES = 10**8
 MANY, SOME = 100_000, 10_000  # samples of a quantity at a point, and of a peak
 
 
@@ -44,7 +40,6 @@ def tolerance(
     distribution: str = "normal",
     sigmas: float = 3.0,
     samples: int | None = None,
-    sobol: int = 1024,
     seed: int = 0,
     **inputs: Any,
 ) -> Tolerance:
@@ -57,45 +52,39 @@ def tolerance(
                   scipy.stats, frozen. F_X and F_Y may vary with the motion
     distribution  within a tolerance: "normal", the tolerance being that many `sigmas`, or "uniform"
     samples       of the Monte Carlo, by default 100000, or 10000 of a peak
-    sobol         base samples of the Sobol indices, a power of two; 0 leaves them out
 
     Returns a dict that prints three lines: the value, its spread, what drives it; `report()` has all:
 
     value          with every input at its mean
     gradient       dict of the exact derivatives by what varies
     first_order    dict mean, std: of the linear function with these derivatives
-    second_order   dict mean, std: with second derivatives, skewness and kurtosis of the inputs; `exact` where
-                   these derivatives are derived, else they are differences of the exact first ones
     monte_carlo    dict mean, std, mean_error, std_error (one standard error each), least, largest,
                    percentiles (dict percent -> value), samples, infeasible (share of samples without value)
-    contributions  dict input -> share of the first-order variance, the largest first
-    sobol          dict input -> dict first, total, first_error, total_error (95 %): shares of the variance
-                   due to an input alone, and with its interactions (SALib)
+    contributions  dict input -> share of the first-order variance, the largest first; an input whose
+                   derivative is 0 has none, whatever it does further away: see monte_carlo
     worst_case     dict lower, upper: with every input anywhere within its tolerance; None for distributions.
                    `guaranteed` says whether no such inputs give a value outside: True by `enclose` (extra
                    `rigorous`), False from the middle and all corners alone, NaN where one has no value.
                    Inputs beyond their tolerances are not covered: `sigmas` says how many standard deviations
                    a tolerance is (None: uniform, no input is beyond), `outside` which share of the Monte
                    Carlo samples lies outside
-    agreement      dict of what should agree: mean and std, second order against Monte Carlo, in standard
-                   errors; linearity, first against second order std, relative; contributions against Sobol's
-                   first indices, the largest difference
-    status         0 ok; 1 no value at the means; 2 some samples have none, and then no Sobol indices; 3 a
-                   kink at the means, such as that of |ec| at ec = 0: derivatives say little, and of
-                   second order nothing; 4 the value jumps next to the means, 5 it has no derivative there
-                   (a peak at a limit angle): trust the samples alone
+    agreement      dict mean, std: how far the Monte Carlo is from the first order, in standard errors; far
+                   where the quantity is curved
+    status         0 ok; 1 no value at the means; 2 some samples have none; 3 a kink at the means, such as
+                   that of |ec| at ec = 0: derivatives say little; 4 the value jumps next to the means, 5 it
+                   has no derivative there (a peak at a limit angle): trust the samples alone
 
-    Inputs vary independently. Sobol indices need the extra `design`. Raises as `evaluate` does.
+    Inputs vary independently. Raises as `evaluate` does.
 
     See docs/choose.md: which call for which question.
 
         >>> import desaxe as dx
         >>> ec, AB = dx.plus_minus(0.02, 1e-4), dx.plus_minus(0.04, 5e-5)
-        >>> found = dx.tolerance("stroke", ec=ec, AB=AB, BC=0.064, sobol=0)
+        >>> found = dx.tolerance("stroke", ec=ec, AB=AB, BC=0.064)
         >>> list(found["contributions"]), round(1e6 * found["first_order"]["std"], 1)
         (['AB', 'ec'], 64.3)
     """
-    _check(distribution, sigmas, samples, sobol, seed)
+    _check(distribution, sigmas, samples, seed)
     check_common(inputs, branch)
     numbers, loads = loads_of({n: v for n, v in inputs.items() if v is not None})
     given = {**{n: read(n, v, distribution, sigmas) for n, v in numbers.items()}, **loads}
@@ -109,7 +98,7 @@ def tolerance(
     count = samples or (MANY if function.at_point else SOME)
     covered = float(sigmas) if distribution == "normal" else None
     with progress_bar() as watch:
-        return _answer(name, function, rough, Steps(3 + bool(sobol), watch), count, sobol, seed, covered)
+        return _answer(name, function, rough, Steps(3, watch), count, seed, covered)
 
 
 def _answer(
@@ -118,7 +107,6 @@ def _answer(
     rough: Sequence[Inexact],
     progress: Steps,
     count: int,
-    sobol: int,
     seed: int,
     covered: float | None,
 ) -> Tolerance:
@@ -129,51 +117,38 @@ def _answer(
     slopes = function.slopes({n: np.array([x]) for n, x in centre.items()})[0]
     steps = STEP * np.array([row.std for row in rough])
     beside = function.beside(centre, steps)
-    bends, exact = function.bends(centre, beside)
-    first, second, shares = _propagated(value, slopes, bends, rough)
+    first, shares = _propagated(value, slopes, rough)
     progress.next(f"{count} samples")
     found = _sampled(function, rough, count, seed)
     drawn = _monte_carlo(found)
-    if sobol:
-        progress.next(f"Sobol indices from {sobol * (len(rough) + 2)} samples")
-    indices = _sobol(function, rough, sobol, seed) if sobol else None
     progress.next("worst case")
     answer = {
         "value": value,
         "gradient": {row.name: float(s) for row, s in zip(rough, slopes, strict=True)},
         "first_order": first,
-        "second_order": {**second, "exact": exact},
         "monte_carlo": drawn,
         "contributions": dict(sorted(shares.items(), key=lambda item: -item[1])),
-        "sobol": indices,
         "worst_case": _covered(_worst_case(function, value, slopes, rough), found, covered),
-        "agreement": _agreement(first, second, drawn, shares, indices),
-        "status": int(_status(value, drawn["infeasible"], beside, bends)),
+        "agreement": _agreement(first, drawn),
+        "status": int(_status(value, drawn["infeasible"], beside)),
     }
     return Tolerance(answer, name)
 
 
-def _status(value: float, lost: float, beside: Beside, bends: Array) -> ToleranceStatus:
+def _status(value: float, lost: float, beside: Beside) -> ToleranceStatus:
     """The status of an answer; see `tolerance`."""
     if np.isnan(value):
         return ToleranceStatus.NO_VALUE
-    return ToleranceStatus.SOME_WITHOUT if lost else beside.status(bends)
+    return ToleranceStatus.SOME_WITHOUT if lost else beside.status()
 
 
-def _check(distribution: str, sigmas: Any, samples: Any, sobol: Any, seed: Any) -> None:
+def _check(distribution: str, sigmas: Any, samples: Any, seed: Any) -> None:
     if not isinstance(distribution, str) or distribution not in DISTRIBUTIONS:
         raise ValueError(f"distribution = {shown(distribution)}: it is one of {', '.join(DISTRIBUTIONS)}")
     if not (isinstance(sigmas, (int, float)) and 1e-6 <= sigmas <= 1e6):
         raise ValueError(f"sigmas = {shown(sigmas)}: expected a finite number above 0, from 1e-6 to 1e6")
     if samples is not None:
         whole_number("samples", samples, 2, MOST_SAMPLES)
-    if (
-        isinstance(sobol, bool)
-        or not isinstance(sobol, int)
-        or not 0 <= sobol <= MOST_BASE
-        or sobol & (sobol - 1)
-    ):
-        raise ValueError(f"sobol = {shown(sobol)}: expected a power of two, at most {MOST_BASE}, or 0")
     whole_number("seed", seed, 0, 2**32 - 1)
 
 
@@ -198,19 +173,12 @@ def _function(name: Any, given: Mapping[str, Any], branch: int) -> SampledQuanti
     return SampledQuantity(name, True, fixed, varying, branch)
 
 
-def _propagated(value: float, slopes: Array, bends: Array, rough: Sequence[Inexact]) -> tuple[Any, Any, Any]:
-    """Mean and standard deviation to first and second order, and each input's share of the former."""
-    std = np.array([row.std for row in rough])
-    parts = (slopes * std) ** 2
-    skewness, kurtosis = (np.array([getattr(row, n) for row in rough]) for n in ("skewness", "kurtosis"))
-    own = np.diag(bends) * std**2
-    mixed = np.triu(bends * np.outer(std, std), 1)
-    variance = parts.sum() + (slopes * std * own * skewness).sum() + (own**2 * (kurtosis - 1.0)).sum() / 4.0
-    variance += (mixed**2).sum()
+def _propagated(value: float, slopes: Array, rough: Sequence[Inexact]) -> tuple[Any, Any]:
+    """Mean and standard deviation to first order, and each input's share of the variance."""
+    parts = (slopes * np.array([row.std for row in rough])) ** 2
     total = parts.sum()
     shares = {row.name: float(p / total) if total else 0.0 for row, p in zip(rough, parts, strict=True)}
-    first = {"mean": value, "std": float(np.sqrt(total))}
-    return first, {"mean": value + float(own.sum()) / 2.0, "std": float(np.sqrt(max(variance, 0.0)))}, shares
+    return {"mean": value, "std": float(np.sqrt(total))}, shares
 
 
 def _sampled(function: SampledQuantity, rough: Sequence[Inexact], count: int, seed: int) -> Array:
@@ -245,27 +213,6 @@ def _monte_carlo(every: Array) -> dict[str, Any]:
         "samples": count,
         "infeasible": lost,
     }
-
-
-def _sobol(function: SampledQuantity, rough: Sequence[Inexact], count: int, seed: int) -> dict[str, Any]:
-    """First and total indices, from SALib's sequence and estimates."""
-    with needed("tolerance: Sobol indices (sobol=0 leaves them out)", "design"):
-        from SALib.analyze import sobol as analyse
-        from SALib.sample import sobol as sample
-    names = [row.name for row in rough]
-    problem = {"num_vars": len(names), "names": names, "bounds": [[0.0, 1.0]] * len(names)}
-    with IMPORTS:  # for the table of a sequence
-        shares = sample.sample(problem, count, calc_second_order=False, seed=seed)
-    shares = np.clip(shares, 1e-12, 1.0 - 1e-12)
-    values = function.values({row.name: row.at(shares[:, i]) for i, row in enumerate(rough)})
-    if not np.isfinite(values).all():
-        return {n: dict.fromkeys(("first", "total", "first_error", "total_error"), np.nan) for n in names}
-    if len(names) == 1:
-        return {names[0]: {"first": 1.0, "total": 1.0, "first_error": 0.0, "total_error": 0.0}}
-    centred = (values - values.mean()) / (values.std() or 1.0)
-    found = analyse.analyze(problem, centred, calc_second_order=False, seed=seed or UNSEEDED)
-    keys = {"first": "S1", "total": "ST", "first_error": "S1_conf", "total_error": "ST_conf"}
-    return {n: {k: float(found[own][i]) for k, own in keys.items()} for i, n in enumerate(names)}
 
 
 def _worst_case(function: SampledQuantity, value: float, slopes: Array, rough: Sequence[Inexact]) -> Any:
@@ -314,16 +261,11 @@ def _enclosed(name: str, ranges: Mapping[str, Any], branch: int) -> dict[str, An
     return found if np.isfinite([found["lower"], found["upper"]]).all() else None
 
 
-def _agreement(first: Any, second: Any, drawn: Any, shares: Any, indices: Any) -> dict[str, float]:
+def _agreement(first: Any, drawn: Any) -> dict[str, float]:
+    """How far the first order is from the Monte Carlo, in standard errors."""
+
     def apart(key: str) -> float:
         error = drawn[f"{key}_error"]
-        return float((drawn[key] - second[key]) / error) if error else 0.0
+        return float((drawn[key] - first[key]) / error) if error else 0.0
 
-    found = {
-        "mean": apart("mean"),
-        "std": apart("std"),
-        "linearity": first["std"] / second["std"] - 1.0 if second["std"] else 0.0,
-    }
-    if indices:
-        found["contributions"] = max(abs(indices[n]["first"] - share) for n, share in shares.items())
-    return found
+    return {key: apart(key) for key in ("mean", "std")}

@@ -11,7 +11,6 @@ from ...mechanism.ranges import Between, PlusMinus, middle_of, refuse_bare_pair
 from ...mechanism.read import in_si
 from ...mechanism.read import read as read_number
 from ...mechanism.spoken import spoken
-from ...support.extras import needed
 from ...units.system import Conversion
 from ...units.text import PLUS_MINUS, with_unit_of
 
@@ -21,31 +20,22 @@ EXPECTED = "a number, a value and tolerance (dx.plus_minus), a range (dx.between
 
 
 class Inexact(NamedTuple):
-    """One input: its mean, standard deviation, skewness and kurtosis (3 for a normal one), and its limits."""
+    """One input: its mean, its standard deviation, and its limits."""
 
     name: str
     mean: float
     std: float
-    skewness: float
-    kurtosis: float
     tolerance: float | None
     kind: Any  # "normal", "uniform" or a distribution with .ppf
-
-    def at(self, share: Array) -> Array:
-        """Quantiles of the distribution."""
-        if self.kind == "uniform":
-            return self.mean + (2.0 * share - 1.0) * float(self.tolerance or 0.0)
-        if self.kind == "normal":
-            with needed("tolerance", "design"):
-                from scipy.special import ndtri
-            return np.asarray(self.mean + self.std * ndtri(share))
-        return np.asarray(self.kind.ppf(share))
 
     def drawn(self, random: np.random.Generator, count: int) -> Array:
         """Random samples of the input."""
         if self.kind == "normal":
             return random.normal(self.mean, self.std, count)
-        return self.at(random.random(count))
+        share = random.random(count)
+        if self.kind == "uniform":
+            return self.mean + (2.0 * share - 1.0) * float(self.tolerance or 0.0)
+        return np.asarray(self.kind.ppf(share))
 
 
 class DistributionInSI:
@@ -58,18 +48,18 @@ class DistributionInSI:
         """Quantiles in SI units."""
         return self.conversion.to_si(self.distribution.ppf(share))
 
-    def stats(self, moments: str = "mvsk") -> tuple[float, ...]:
-        """Mean and variance in SI units, skewness and excess kurtosis."""
-        mean, variance, *shape = (float(x) for x in self.distribution.stats(moments=moments))
+    def stats(self, moments: str) -> tuple[float, float]:
+        """Mean and variance in SI units."""
+        mean, variance = (float(x) for x in self.distribution.stats(moments=moments))
         si = self.conversion.si
-        return (float(self.conversion.to_si(mean)), variance * float(si * si), *shape)
+        return float(self.conversion.to_si(mean)), variance * float(si * si)
 
 
 def read(name: str, value: Any, distribution: str, sigmas: float) -> float | Inexact:
     """A number, or an input that is not known exactly; errors name it."""
     if hasattr(value, "ppf"):
-        mean, variance, skewness, excess = (float(x) for x in value.stats(moments="mvsk"))
-        return Inexact(name, mean, sqrt(variance), skewness, excess + 3.0, None, value)
+        mean, variance = (float(x) for x in value.stats(moments="mv"))
+        return Inexact(name, mean, sqrt(variance), None, value)
     pair = _pair(name, value)
     if pair is None:
         return _number(name, value)
@@ -81,8 +71,8 @@ def read(name: str, value: Any, distribution: str, sigmas: float) -> float | Ine
     if tolerance == 0.0:
         return nominal
     if distribution == "uniform":
-        return Inexact(name, nominal, tolerance / sqrt(3.0), 0.0, 1.8, tolerance, "uniform")
-    return Inexact(name, nominal, tolerance / sigmas, 0.0, 3.0, tolerance, "normal")
+        return Inexact(name, nominal, tolerance / sqrt(3.0), tolerance, "uniform")
+    return Inexact(name, nominal, tolerance / sigmas, tolerance, "normal")
 
 
 def _pair(name: str, value: Any) -> tuple[float, float] | None:

@@ -54,7 +54,7 @@ def spread(content: Content, units: UnitSystem, tolerances: Mapping[str, float])
         measure: Any = name if of_design(name) else ("absmax", name)
         words = name if of_design(name) else f"largest magnitude of {name}"
         try:
-            found = tolerance(measure, branch=content.branch, sobol=0, samples=SAMPLES, **inputs)
+            found = tolerance(measure, branch=content.branch, samples=SAMPLES, **inputs)
         except (ValueError, TypeError) as error:
             blocks.append(Text(f"{words}: {error}"))
             continue
