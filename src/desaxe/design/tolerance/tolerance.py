@@ -262,7 +262,7 @@ def _enclosed(name: str, ranges: Mapping[str, Any], branch: int) -> dict[str, An
 
 
 def _agreement(first: Any, drawn: Any) -> dict[str, float]:
-    """How far the first order is from the Monte Carlo, in standard errors."""
+    """The distance of the Monte Carlo from the first order, in standard errors."""
 
     def apart(key: str) -> float:
         error = drawn[f"{key}_error"]
