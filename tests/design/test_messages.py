@@ -74,7 +74,7 @@ TABLE = [  # a call and what is good for it; what is changed, the error and its 
         ({"omega0": None}, ValueError, "omega0 is missing or 0"),
     ]),
     ((dx.flywheel,), WHEEL, [
-        ({"F_Y": lambda theta: {}[theta]}, ValueError, r"the function failed at theta = -?\d+[.]\d+: KeyError"),
+        ({"F_Y": lambda theta: {}[theta]}, ValueError, r"function failed at theta = -?\d+[.]\d+: KeyError"),
         ({"F_Y": lambda theta: np.ones(3)}, ValueError, r"F_Y: a function of \d+ angles gave the shape"),
         ({"F_Y": lambda theta: np.nan}, ValueError, "F_Y: the function gave nan"),
         ({"fluctuation": 3}, ValueError, "fluctuation = 3"),

@@ -5,6 +5,7 @@ from math import exp, pi, sqrt
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import desaxe as dx
 from desaxe.loads.angles import meeting_angles
@@ -332,6 +333,79 @@ def test_designs_of_a_machine_are_in_its_units_with_all_their_motions():
         assert not other["stable"]
         assert other["omega_mean"] == pytest.approx(own["omega_mean"], rel=1e-9)
         assert many["message"][k] == one["message"] == "ok"
+
+
+SLENDER = {"ec": 0.0, "AB": 0.0934, "BC": 0.5423, "m_rod": 5.9, "m_slider": 27.6, "g_Y": -9.81}
+LIGHT = {"ec": 0.015, "AB": 0.06, "BC": 0.3, "m_slider": 120.0, "m_rod": 40.0}  # no I_crank
+NEARLY = {"ec": -0.0543, "AB": 0.0658, "BC": 0.32, "m_rod": 0.69, "m_slider": 42.9}
+
+
+def punched(press, depth, first, last):
+    """A press whose load over the end of its stroke goes from `first` to `last`, also for the free bodies."""
+    outer = sqrt((press["AB"] + press["BC"]) ** 2 - press["ec"] ** 2)
+
+    def force(theta, Y, way):
+        d = outer - Y
+        return first + (last - first) * d / depth if d < depth and way > 0.0 else 0.0
+
+    load = dx.over_stroke([0.0, depth, depth], [first, last, 0.0], [0.0] * 3, dead_centre="outer")
+    return {**press, "F_Y": load}, {**press, "F_Y": force}
+
+
+def same(press):
+    return press, press
+
+
+@pytest.mark.parametrize(
+    ("machine", "motor", "settles"),
+    [
+        (punched({**SLENDER, "I_crank": 0.039}, 0.013, -322.0, -193.0), (65.0, 0.218, 104.7, 5.766), True),
+        (
+            punched({**SLENDER, "I_crank": 0.039, "mu": 0.08}, 0.013, -322.0, -193.0),
+            (65, 0.218, 104.7, 5.766),
+            True,
+        ),
+        (same(LIGHT), (40.0, 0.15, 50 * pi, 25.0), True),
+        (same(LIGHT), (400.0, 0.15, 50 * pi, 25.0), True),
+        (punched(LIGHT, 0.008, -5e3, -5e3), (100.0, 0.15, 50 * pi, 25.0), True),
+        # Next to a stall the crank all but stands four times a turn.
+        (punched(NEARLY, 0.0165, -7950.0, -7950.0), (108.0, 0.261, 162.9, 5.0), True),
+        (punched(LIGHT, 0.008, -80e3, -80e3), (100.0, 0.15, 50 * pi, 25.0), False),
+        (punched({**LIGHT, "I_crank": 0.1}, 0.008, -80e3, -80e3), (100.0, 0.15, 50 * pi, 25.0), False),
+        (punched({**LIGHT, "I_crank": 1.0}, 0.008, -80e3, -80e3), (100.0, 0.15, 50 * pi, 25.0), True),
+    ],
+)
+def test_a_light_crank_settles_or_stalls_as_its_free_bodies_do(machine, motor, settles):
+    """By SciPy's Radau from the motor's speed: a stiff turn forgets where it starts."""
+    call, raw = machine
+    found = dx.steady(torque=dx.kloss(*motor), **call)
+    bodies, (most, slip, top, gear) = FreeBodies(**raw), motor
+
+    def rate(t, y):
+        u = (1.0 - gear * y[1] / top) / slip
+        return [y[1], bodies.alpha(y[0], y[1] ** 2, 2.0 * gear * most * u / (1.0 + u * u))]
+
+    def stalls(t, y):
+        return y[1] - 1e-5 * top
+
+    def turns(t, y):
+        return y[0] - 2 * pi
+
+    stalls.terminal = turns.terminal = True
+    speed, times, turn_time = top / gear, [], 2 * pi * gear / top
+    for _ in range(2):
+        how = {"method": "Radau", "rtol": 1e-8, "atol": 1e-10, "max_step": turn_time / 100}
+        run = solve_ivp(rate, (0.0, 50 * turn_time), [0.0, speed], events=[stalls, turns], **how)
+        speed = run.y[1, -1]
+        times.append(run.t[-1])
+        if run.t_events[0].size:
+            break
+    assert (len(run.t_events[0]) == 0) == settles
+    assert found["status"] == (0 if settles else 1), found["message"]
+    if settles:
+        assert found["period"] == pytest.approx(times[-1], rel=2e-6)
+    else:
+        assert "too weak, it stalls near theta" in found["message"]
 
 
 def test_simulate_takes_motors():

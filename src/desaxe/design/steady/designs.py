@@ -153,12 +153,11 @@ class Coefficients(NamedTuple):
     load: Array
     guide: tuple[Array, ...] | None
 
-    def part(self, at: tuple[Any, ...]) -> "Coefficients":
-        """The course at some of its places, with another axis of starts."""
-        guide = None if self.guide is None else tuple(v[at][:, None] for v in self.guide)
-        four = (v[at][:, None] for v in (self.theta, self.inertia, self.slope, self.load))
-        theta, inertia, slope, load = four
-        return Coefficients(theta, np.reshape(self.way, (-1, 1)), inertia, slope, load, guide)
+    def some(self, at: Any) -> "Coefficients":
+        """The coefficients at some of the places."""
+        guide = None if self.guide is None else tuple(v[at] for v in self.guide)
+        theta, inertia, slope, load = (v[at] for v in (self.theta, self.inertia, self.slope, self.load))
+        return Coefficients(theta, self.way, inertia, slope, load, guide)
 
 
 def picked(fields: Any, rows: Array) -> Any:

@@ -1,99 +1,178 @@
 """All steady states of designs: turns from many speeds, and the changes of sign of what a turn gains.
 
-P(E), the energy a turn after E, ascends; its fixed points are where the gain P(E) - E changes sign. Turns
-are followed roughly, by the exponential Runge-Kutta method of order 4 of S. M. Cox and P. C. Matthews (J.
-Comput. Phys. 176, 2002), which a stiff motor does not upset, from speeds that the motor's curve chooses and
-between which more are put where the crank only just gets round and where two fixed points could hide.
+P(E), the energy a turn after E, ascends; its fixed points are where the gain P(E) - E changes sign. Turns are
+followed by the Radau IIA method of three stages, which a stiff motor does not upset, from speeds that the
+motor's curve chooses and between which more are put where the crank only just gets round and where two fixed
+points could hide. Steps that leave too much error, or in which the crank would stop, are cut into parts:
+twice at first, and as often as it takes for a design that would have no stable motion.
 """
 
 from copy import copy
+from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...support.panels import TO_COEFFICIENTS, Panels
 from .designs import INSIDE, Coefficients, DesignRows, course_of, picked, rate
 
 Array = NDArray[Any]
-PLACES = np.array([INSIDE, 0.25, 0.5, 0.75, 1.0 - INSIDE])  # of a panel: two steps
 ROUNDS = 4  # of putting starts between others
 CLOSE = 1e-4  # of an energy: nearer to each other no two starts are told apart
 SPLIT = 6  # starts put into an interval
 INTERVALS = 4  # so many of a design in a round
-LARGEST = 30.0  # exponent
-SERIES = 1e-2  # below it they are series
+LIGHT = 0.5  # of the mean inertia: with less at the start, speeds and energies there are two sets of starts
+BENT = 1e-3  # of an inertia, by its logarithm, or of the largest load: the last coefficients of a panel
+NARROWEST = 1e-6  # rad: a panel
+ROOT = sqrt(6.0)
+STAGES = np.array([0.4 - 0.1 * ROOT, 0.4 + 0.1 * ROOT, 1.0])
+RADAU = np.array(
+    [
+        [(88 - 7 * ROOT) / 360, (296 - 169 * ROOT) / 1800, (3 * ROOT - 2) / 225],
+        [(296 + 169 * ROOT) / 1800, (88 + 7 * ROOT) / 360, -(3 * ROOT + 2) / 225],
+        [(16 - ROOT) / 36, (16 + ROOT) / 36, 1 / 9],
+    ]
+)
+SLOPES = np.linalg.inv(RADAU)  # of the stages, from their changes
+# The slope at the start, extrapolated from those of the stages: what it misses is the error.
+EXTRAPOLATED = np.linalg.solve(np.vander(STAGES, increasing=True).T, [1.0, 0.0, 0.0])
+GAMMA = 0.25
+PLACES = np.concatenate([[INSIDE], STAGES[:2], [1.0 - INSIDE]])  # of a step
+NEWTON, SETTLED = 7, 1e-3  # steps of Newton's method, and the last one, of the energy
+SHRINK = 0.1  # of the energy: what a step of Newton's method leaves of it at least
+ERROR = 3e-2  # of the energy: in a step
+PARTS, SHALLOW, DEEP = 4, 2, 8  # of a step with too much error, and how often they are cut again
 
 
 class Turns:
     """The turns of designs from any energies: the gain over a period, NaN where the crank stops."""
 
     def __init__(self, designs: DesignRows, edges: Array) -> None:
-        self.designs, self.edges = designs, edges
-        self.width = np.diff(edges)
-        x = edges[:, :-1, None] + self.width[..., None] * PLACES
-        self.course = course_of(designs, x)
-        self.row = designs.row(2)
-        weight = self.width[..., None] / PLACES.size
+        self.designs = designs
+        self.edges, self.course = _resolved(designs, edges)
+        x = self.edges[:, :-1, None] + np.diff(self.edges)[..., None] * PLACES
+        self.whole = _course_at(self.designs, self.edges, self.course, x)
         inertia = np.where(np.isfinite(self.course.inertia), self.course.inertia, 0.0)
-        self.mean_inertia = (inertia * weight).sum((1, 2)) / designs.period
+        self.mean_inertia = Panels(self.edges).integral(inertia) / designs.period
 
     def rows(self, index: Array) -> "Turns":
         """The turns of some of the designs, or of one several times."""
-        found = copy(self)
-        found.designs, found.row = self.designs.rows(index), self.designs.rows(index).row(2)
-        found.edges, found.width = self.edges[index], self.width[index]
-        found.course, found.mean_inertia = picked(self.course, index), self.mean_inertia[index]
-        return found
+        turns = copy(self)
+        turns.designs, turns.edges = self.designs.rows(index), self.edges[index]
+        turns.course, turns.whole = picked(self.course, index), picked(self.whole, index)
+        turns.mean_inertia = self.mean_inertia[index]
+        return turns
 
-    def gain(self, E0: Array, path: list[Array] | None = None) -> Array:
-        """The gain of each start (designs, starts); those at edges and middles of panels go into `path`."""
+    def gain(self, E0: Array, cuts: int = SHALLOW) -> Array:
+        """The gain of each start (designs, starts)."""
         W = np.zeros_like(E0)
         with np.errstate(all="ignore"):
-            for k in range(self.width.shape[1]):
-                h = 0.5 * self.width[:, k, None]
-                for first in (0, 2):
-                    courses = [self.course.part((slice(None), k, first + j)) for j in range(3)]
-                    W = W + self._step(courses, h, E0 + W)
-                    if path is not None:
-                        path.append(W)
+            for panel in range(self.edges.shape[1] - 1):
+                start, end = self.edges[:, panel, None], self.edges[:, panel + 1, None]
+                W = W + self._change(
+                    panel, start, end - start, E0 + W, cuts, self.whole.some(np.s_[:, panel])
+                )
         return W
 
-    def _step(self, courses: list[Coefficients], h: Array, E: Array) -> Array:
-        """The change of E over a step."""
-        source, row = self.designs.source, self.row
-        start = rate(courses[0], source, row, E)
-        c = np.clip(h * start.g, -1e6, LARGEST)
-        half = 0.5 * h * _one(0.5 * c)
-        phi1, phi2, phi3 = _phi(c)
-        g = c / np.where(h > 0.0, h, 1.0)
-        a = half * start.f
-        at_a = rate(courses[1], source, row, E + a).f - g * a
-        b = half * at_a
-        at_b = rate(courses[1], source, row, E + b).f - g * b
-        d = np.exp(0.5 * c) * a + half * (2.0 * at_b - start.f)
-        at_d = rate(courses[2], source, row, E + d).f - g * d
-        return np.asarray(
-            h
-            * (
-                (phi1 - 3.0 * phi2 + 4.0 * phi3) * start.f
-                + (2.0 * phi2 - 4.0 * phi3) * (at_a + at_b)
-                + (4.0 * phi3 - phi2) * at_d
-            )
-        )
+    def path(self, E0: Array, cuts: int = SHALLOW) -> Array:
+        """What one start of each design has gained at edges and middles of panels."""
+        gained = [np.zeros((len(E0), 1))]
+        with np.errstate(all="ignore"):
+            for panel in range(self.edges.shape[1] - 1):
+                start, end = self.edges[:, panel, None], self.edges[:, panel + 1, None]
+                h = 0.5 * (end - start)
+                for x in (start, start + h):
+                    E = E0[:, None] + gained[-1]
+                    gained.append(gained[-1] + self._change(panel, x, h, E, cuts))
+        return np.concatenate(gained, axis=1)
+
+    def _change(
+        self, panel: int, x: Array, h: Array, E: Array, cuts: int, course: Coefficients | None = None
+    ) -> Array:
+        """The change of E in a step after x, NaN where the crank stops; cut into parts where it fails."""
+        if course is None:
+            own = self.course.some(np.s_[:, panel : panel + 1])
+            course = _course_at(self.designs, self.edges[:, panel : panel + 2], own, x + h * PLACES)
+        change, exact, there = self._step(course, h, E)
+        bad = ~exact & (E > 0.0) & (h > 0.0)
+        if not cuts:
+            return np.where(bad & ~there, np.nan, change)
+        if not bad.any():
+            return change
+        rows, at = np.nonzero(bad)
+        lanes = self._of_panel(panel).rows(rows)
+        part, start, W = h[rows] / PARTS, E[rows, at][:, None], np.zeros((len(rows), 1))
+        for k in range(PARTS):
+            W = W + lanes._change(0, x[rows] + k * part, part, start + W, cuts - 1)
+        change[rows, at] = W[:, 0]
+        return change
+
+    def _of_panel(self, panel: int) -> "Turns":
+        turns, at = copy(self), np.s_[:, panel : panel + 1]
+        turns.edges, turns.course = self.edges[:, panel : panel + 2], self.course.some(at)
+        turns.whole = self.whole.some(at)
+        return turns
+
+    def _step(self, course: Coefficients, h: Array, E: Array) -> tuple[Array, Array, Array]:
+        """The change of E in a step; whether that is exact enough; whether there is one at all."""
+        source, row, h, E = self.designs.source, self.designs.row(3), h[..., None], E[..., None]
+        course = course.some(np.s_[:, None])._replace(way=np.reshape(course.way, (-1, 1, 1)))
+        first = rate(course.some(np.s_[..., :1]), source, row, E)
+        course, c = course.some(np.s_[..., 1:]), h * STAGES
+        Z = np.maximum(c * first.f / (1.0 - c * np.minimum(first.g, 0.0)), (SHRINK - 1.0) * E)
+        for _ in range(NEWTON):
+            here = rate(course, source, row, E + Z)
+            step = _solved(h * here.g, Z @ SLOPES.T - h * here.f)
+            Z = np.maximum(Z - step, SHRINK * (E + Z) - E)
+            moved = (np.abs(step) / (E + Z)).max(-1)
+            if not (moved > SETTLED).any():
+                break
+        there = moved <= SETTLED
+        missed = h * first.f - Z @ (SLOPES.T @ EXTRAPOLATED)[:, None]
+        error = np.abs(GAMMA * missed / (1.0 - GAMMA * h * first.g))[..., 0]
+        return Z[..., -1], there & (error <= ERROR * (E[..., 0] + Z[..., -1])), there
 
 
-def _one(c: Array) -> Array:
-    """(exp(c) - 1)/c."""
-    far = np.abs(c) > SERIES
-    return np.where(far, np.expm1(c) / np.where(far, c, 1.0), 1.0 + c * (0.5 + c / 6.0))
+def _course_at(designs: DesignRows, edges: Array, course: Coefficients, x: Array) -> Coefficients:
+    """The coefficients at any places within the edges, from those at nodes."""
+    read = Panels(edges).reader(x)
+    guide = None if course.guide is None else tuple(map(read, course.guide))
+    three = read(course.inertia), read(course.slope), read(course.load)
+    return Coefficients(designs.theta(x), course.way, *three, guide)
 
 
-def _phi(c: Array) -> tuple[Array, Array, Array]:
-    """(exp(c) - 1)/c and the two functions after it."""
-    far, one = np.abs(c) > SERIES, _one(c)
-    safe = np.where(far, c, 1.0)
-    two = np.where(far, (one - 1.0) / safe, 0.5 + c * (1.0 + 0.25 * c) / 6.0)
-    return one, two, np.where(far, (two - 0.5) / safe, (1.0 + c * (0.25 + 0.05 * c)) / 6.0)
+def _resolved(designs: DesignRows, edges: Array) -> tuple[Array, Coefficients]:
+    """Edges of panels on which inertia and loads are nearly polynomials, and their coefficients there."""
+    while True:
+        mesh = Panels(edges)
+        course = course_of(designs, mesh.x)
+        with np.errstate(all="ignore"):
+            bad = _tail(np.log(course.inertia)) > BENT
+            bad |= _tail(course.load) > BENT * np.abs(course.load).max((1, 2))[:, None]
+        bad &= 2.0 * mesh.half[..., 0] > NARROWEST
+        if not bad.any():
+            return edges, course
+        edges = mesh.refined(bad, edges)
+
+
+def _tail(values: Array) -> Array:
+    return np.asarray(np.abs(values @ TO_COEFFICIENTS[-2:].T).max(-1))
+
+
+def _solved(a: Array, b: Array) -> Array:
+    """The solutions y of (S - diag(a)) y = b by Cramer's rule, S the slopes of the stages."""
+    (_, s01, s02), (s10, _, s12), (s20, s21, _) = SLOPES.tolist()
+    p, q, r = (SLOPES[k, k] - a[..., k] for k in range(3))
+    b0, b1, b2 = (b[..., k] for k in range(3))
+    qr, pr, pq = q * r - s12 * s21, p * r - s02 * s20, p * q - s01 * s10
+    c01, c02 = s12 * s20 - s10 * r, s10 * s21 - s20 * q
+    y = np.empty(b.shape)
+    y[..., 0] = qr * b0 + (s02 * s21 - s01 * r) * b1 + (s01 * s12 - s02 * q) * b2
+    y[..., 1] = c01 * b0 + pr * b1 + (s02 * s10 - s12 * p) * b2
+    y[..., 2] = c02 * b0 + (s01 * s20 - s21 * p) * b1 + pq * b2
+    y /= (p * qr + s01 * c01 + s02 * c02)[..., None]
+    return y
 
 
 class Brackets(NamedTuple):
@@ -126,10 +205,8 @@ class Scan(NamedTuple):
 def scan(designs: DesignRows, edges: Array) -> Scan:
     """The gains of all starts that are needed to see every change of sign."""
     turns = Turns(designs, edges)
-    speeds = np.maximum(designs.source.speeds(designs.motor) * designs.way[:, None], 0.0)
-    with np.errstate(over="ignore"):
-        starts = np.sort(0.5 * turns.mean_inertia[:, None] * speeds**2, axis=1)
-    gains = turns.gain(np.where(starts > 0.0, starts, np.nan))
+    starts = _starts(turns)
+    gains = turns.gain(starts)
     for _ in range(ROUNDS):
         score = _scores(starts, gains)
         rows = np.flatnonzero(score.any(1))
@@ -142,7 +219,25 @@ def scan(designs: DesignRows, edges: Array) -> Scan:
         starts, gains = np.concatenate([starts, extra], 1), np.concatenate([gains, extra_gain], 1)
         order = np.argsort(starts, axis=1)
         starts, gains = np.take_along_axis(starts, order, 1), np.take_along_axis(gains, order, 1)
+    found = Scan(turns, starts, gains).found()
+    none = np.setdiff1d(np.arange(designs.size), found.design[found.falls])
+    if len(none):
+        gains[none] = turns.rows(none).gain(starts[none], cuts=DEEP)
     return Scan(turns, starts, gains)
+
+
+def _starts(turns: Turns) -> Array:
+    """The energies of the motor's speeds: in the mean, and of a light crank at the start, too."""
+    designs = turns.designs
+    speeds = np.maximum(designs.source.speeds(designs.motor) * designs.way[:, None], 0.0)
+    first = designs.values(["M_eff"], turns.edges[:, :1])["M_eff"] + designs.J[:, None]
+    light = first < LIGHT * turns.mean_inertia[:, None]
+    with np.errstate(over="ignore", invalid="ignore"):
+        every = [0.5 * turns.mean_inertia[:, None] * speeds**2]
+        if light.any():
+            every.append(np.where(light, 0.5 * first * speeds**2, np.nan))
+    starts = np.sort(np.concatenate(every, axis=1), axis=1)
+    return np.where(starts > 0.0, starts, np.nan)
 
 
 def _scores(starts: Array, gains: Array) -> Array:

@@ -10,7 +10,7 @@ from ...support.panels import NODE, Panels
 from .designs import DesignRows, picked, vanishing
 from .figures import Figures, course_at_steps, figures_of
 from .orbit import PANELS, Orbit, astray, besides, moved, newton, switches, unresolved
-from .scan import Brackets, Scan, Turns, scan
+from .scan import DEEP, NARROWEST, Brackets, Scan, Turns, scan
 from .slopes import OrbitSlopes
 
 Array = NDArray[Any]
@@ -20,6 +20,8 @@ CLOSER = 14  # secant steps to a change of sign, where Newton's method did not s
 ROUGH = 1e-4  # of the energy: a gain from which Newton's method settles
 ROUNDS = 12  # of moving edges
 AT_ONCE = 5_000  # panels of designs
+SHARE = 0.2  # of an energy, by its logarithm: between the places from which a motion is guessed
+HALVED = 12  # times, panels of a guess
 REPEATS = 4  # rows of finer panels for these
 
 
@@ -36,14 +38,15 @@ class States(NamedTuple):
 
 def states_of(designs: DesignRows, gradient: bool) -> States:
     """All steady states of designs."""
-    edges = designs.edges()
-    scanned = scan(designs, edges)
+    scanned = scan(designs, designs.edges())
+    edges = scanned.turns.edges
     found = scanned.found()
     solved = _Solved(designs.rows(found.design), gradient)
     many = max(1, AT_ONCE // edges.shape[1])
     for first in range(0, designs.size, many):
         lanes = np.arange(*np.searchsorted(found.design, [first, first + many]))
-        _settle(solved, edges[found.design[lanes]], scanned.turns, found, lanes)
+        if len(lanes):
+            _settle(solved, edges[found.design[lanes]], scanned.turns, found, lanes)
     solved.jams |= vanishing(designs)[found.design]
     good = np.flatnonzero(solved.good & _first_of_each(found.design, solved.E0))
     return States(
@@ -65,13 +68,16 @@ def _settle(solved: "_Solved", edges: Array, turns: Turns, found: Brackets, lane
     first = _from_turns(turns.rows(found.design), found.E0)
     stable = first.log_multiplier < 0.0
     lost = ~first.good | (stable != found.falls) | ~_first_of_each(found.design, first.E0)
-    kept, again = np.flatnonzero(~lost), np.flatnonzero(lost)
+    kept = np.flatnonzero(~lost)
     solved.settle(lanes[kept], edges[kept], _rows(first, kept))
+    again = np.flatnonzero(lost | ~solved.good[lanes])
     if len(again):
         fine = _finer(edges[again])
         closer = Turns(solved.lanes.rows(lanes[again]), fine)
         there, E0 = _closer(closer, found.low[again], found.high[again])
-        solved.settle(lanes[again][there], fine[there], _from_turns(closer.rows(there), E0))
+        if len(there):
+            closer = _following(closer.rows(there), E0)
+            solved.settle(lanes[again][there], closer.edges, _from_turns(closer, E0))
 
 
 class _Solved:
@@ -161,15 +167,25 @@ def _rows(orbit: Orbit, rows: Array) -> Orbit:
 
 def _from_turns(turns: Turns, E0: Array) -> Orbit:
     """The motions near rough turns from an energy each."""
-    path: list[Array] = [np.zeros((len(E0), 1))]
-    turns.gain(E0[:, None], path)
-    mesh = Panels(turns.edges)
-    W = np.concatenate(path, axis=1)
+    W, mesh = turns.path(E0), Panels(turns.edges)
     first, middle, last = W[:, :-1:2, None], W[:, 1::2, None], W[:, 2::2, None]
     with np.errstate(all="ignore"):
         slope = (0.5 * (last - first) + NODE * (first - 2.0 * middle + last)) / mesh.half
         slope = np.where(mesh.half > 0.0, slope, 0.0)
     return newton(turns.designs, mesh, E0, np.nan_to_num(slope), turns.designs.switches)
+
+
+def _following(turns: Turns, E0: Array) -> Turns:
+    """The same turns on panels in each half of which the energy changes by a share."""
+    for _ in range(HALVED):
+        with np.errstate(all="ignore"):
+            E = np.log(E0[:, None] + turns.path(E0, DEEP))
+            change = np.abs(np.diff(E)).reshape(len(E), -1, 2).max(-1)
+        bad = (change > SHARE) & (np.diff(turns.edges) > NARROWEST)
+        if not bad.any() or turns.edges.shape[1] > PANELS:
+            break
+        turns = Turns(turns.designs, Panels(turns.edges).refined(bad, turns.edges))
+    return turns
 
 
 def _finer(edges: Array) -> Array:

@@ -5,13 +5,13 @@ from math import degrees
 import numpy as np
 
 from ...mechanism.spoken import spoken
+from ...support.panels import Panels
 from .designs import DesignRows, vanishing
-from .scan import Scan
+from .scan import DEEP, Scan
 from .states import States
 
 SHARE = 0.01  # of the gain: less work of the loads is not worth a word
-SIMPSON = np.array([1.0, 4.0, 2.0, 4.0, 1.0]) / 12.0  # at the places of a panel that turns take
-BALANCED = 1e-9  # of the work over a period: what of it counts as none
+BALANCED = 1e-7  # of the work over a period: what of it counts as none
 
 
 def why_none(designs: DesignRows, states: States, k: int) -> str:
@@ -45,14 +45,22 @@ def why_none(designs: DesignRows, states: States, k: int) -> str:
             f"no steady state of its own: at {_speed(scan, k, starts[last])}, as at others, the motor "
             "balances the loads; its torque must fall over the speed there"
         )
+    if gains[last] < 0.0:
+        first = there & (gains > 0.0)
+        ends = _each([_speed_of(scan, k, e) for e in (starts[first].max(initial=0.0), starts[last])])
+        return f"a steady state between the speeds {ends} is not resolved"
     return (
         f"no steady state: the motor is too strong, it runs away: at {_speed(scan, k, starts[last])} "
         f"a period still gains {_energy(gains[last])}{_driven(designs, scan, k, gains[last])}"
     )
 
 
+def _speed_of(scan: Scan, k: int, energy: float) -> float:
+    return float(np.sqrt(2.0 * energy / scan.turns.mean_inertia[k]))
+
+
 def _speed(scan: Scan, k: int, energy: float) -> str:
-    return spoken("omega", np.sqrt(2.0 * energy / scan.turns.mean_inertia[k]), ".6g", says_unit=True)
+    return spoken("omega", _speed_of(scan, k, energy), ".6g", says_unit=True)
 
 
 def _each(speeds: list[float]) -> str:
@@ -71,11 +79,8 @@ def _stall(designs: DesignRows, scan: Scan, k: int) -> str:
         return "it turns the crank at no speed"
     if not len(stopped):
         return f"a period takes {_energy(-np.nanmax(gains))} or more from the crank at any speed"
-    one = designs.rows(np.array([k]))
-    turns = type(scan.turns)(one, scan.turns.edges[[k]])
-    path: list[np.ndarray] = []
-    turns.gain(starts[None, [stopped[-1]]], path)
-    at = int(np.argmax(np.isnan(np.concatenate(path, axis=1)[0]))) // 2
+    path = scan.turns.rows(np.array([k])).path(starts[stopped[-1:]], DEEP)
+    at = (int(np.argmax(np.isnan(path[0]))) - 1) // 2
     x = float(0.5 * (scan.turns.edges[k, at] + scan.turns.edges[k, at + 1]))
     theta = float(designs.way[k]) * x
     angle = spoken("theta", theta, ".3g", says_unit=True)
@@ -84,12 +89,12 @@ def _stall(designs: DesignRows, scan: Scan, k: int) -> str:
 
 def _work(scan: Scan, k: int) -> float:
     """The work of the loads over a period, of either sign."""
-    return float((np.abs(scan.turns.course.load[k]).mean(-1) * scan.turns.width[k]).sum())
+    return float(Panels(scan.turns.edges[k]).integral(np.abs(scan.turns.course.load[k])))
 
 
 def _driven(designs: DesignRows, scan: Scan, k: int, gain: float) -> str:
     """That the loads drive the crank, where they do a share of what a period gains."""
-    work = -float(designs.way[k] * (scan.turns.course.load[k] @ SIMPSON * scan.turns.width[k]).sum())
+    work = -float(designs.way[k] * Panels(scan.turns.edges[k]).integral(scan.turns.course.load[k]))
     if work <= SHARE * gain:
         return ""
     return f"; the loads themselves drive the crank, {_energy(work, '.4g')} a period: check their signs"
