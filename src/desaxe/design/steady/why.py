@@ -79,8 +79,10 @@ def _stall(designs: DesignRows, scan: Scan, k: int) -> str:
         return "it turns the crank at no speed"
     if not len(stopped):
         return f"a period takes {_energy(-np.nanmax(gains))} or more from the crank at any speed"
-    path = scan.turns.rows(np.array([k])).path(starts[stopped[-1:]], DEEP)
-    at = (int(np.argmax(np.isnan(path[0]))) - 1) // 2
+    stalled = np.isnan(scan.turns.rows(np.full(len(stopped), k)).path(starts[stopped], DEEP))
+    if not stalled.any():
+        return "it just does not get round"
+    at = (int(np.argmax(stalled[stalled.any(1)][-1])) - 1) // 2
     x = float(0.5 * (scan.turns.edges[k, at] + scan.turns.edges[k, at + 1]))
     theta = float(designs.way[k]) * x
     angle = spoken("theta", theta, ".3g", says_unit=True)
