@@ -76,7 +76,7 @@ class Turns:
         return W
 
     def path(self, E0: Array, cuts: int = SHALLOW) -> Array:
-        """What one start of each design has gained at edges and middles of panels."""
+        """The energy that one start of each design has gained at edges and middles of panels."""
         gained = [np.zeros((len(E0), 1))]
         with np.errstate(all="ignore"):
             for panel in range(self.edges.shape[1] - 1):
