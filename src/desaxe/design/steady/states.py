@@ -176,7 +176,7 @@ def _from_turns(turns: Turns, E0: Array) -> Orbit:
 
 
 def _following(turns: Turns, E0: Array) -> Turns:
-    """The same turns on panels in each half of which the energy changes by a share."""
+    """Turns on panels cut until the energy changes by a small share in each half."""
     for _ in range(HALVED):
         with np.errstate(all="ignore"):
             E = np.log(E0[:, None] + turns.path(E0, DEEP))
