@@ -31,9 +31,13 @@ FILES = {
     "units between the names": "theta, deg, a_C, kN\n0, 0\n90, -0.4005\n180, -0.05\n",
     "units behind a stroke": "theta / deg;a_C / kN\n0;0\n90;-0,4005\n180;-0,05\n",
     "notes": 'theta [deg],a_C [N],note\n0,0,"start; of\nthe stroke"\n90,-400.5,"1,5 mm ""left"""\n180,-50,\n',
+    "a remark": "press 4\n0,0,-\n1.5707963267948966,-400.5,-\n3.141592653589793,-50,a\n",
+    "settings": "Interval,1e-3\n0,0,x\n1.5707963267948966,-400.5,y\n3.141592653589793,-50,z\n",
     "remarks and empty lines": "# 4.3.\n\ntheta [deg];a_C [N]\n0;0\n# halt\n;;\n90;-400.5\n180;-50\n\n",
     "a separator at the end": "theta [deg];a_C [N];\n0;0;\n90;-400,5;\n180;-50;\n",
 }  # fmt: skip
+
+WITHOUT_HEADING = ("plain, in SI units", "a remark", "settings")
 
 
 def written(folder, content):
@@ -49,7 +53,7 @@ def test_files_of_many_kinds_are_one_load(name, tmp_path):
     assert (list(table.knots), list(table.values)) == (ANGLES, FORCES)
 
 
-@pytest.mark.parametrize("name", [name for name in FILES if name != "plain, in SI units"])
+@pytest.mark.parametrize("name", [name for name in FILES if name not in WITHOUT_HEADING])
 def test_files_of_many_kinds_are_one_measurement(name, tmp_path):
     content = FILES[name]
     content = content if isinstance(content, bytes) else content.encode()
@@ -66,6 +70,7 @@ REFUSED = {
     "theta [deg];F [N]\n0;0\n90;-1.000,5\n": r"line 3, column 2 \(value\): '-1.000,5' .* one decimal mark",
     "theta [deg];F [N]\n0;0,5\n90;1.5\n": r"line 3, column 2 \(value\): '1.5' .* one decimal mark",
     'theta [deg],F [N]\n0,0\n90,"-400,5"\n': r"line 3, column 2 .* '-400,5' is not .* semicolons or tabs",
+    "theta,F\n0,0\n0,5,1,5\n": r"line 3, column 3 \(no heading\): .* semicolons or tabs",
     "theta;F\n0;0\n1 234;7\n": r"line 3, column 1 \(theta\): '1 234' is not .* marks between thousands",
     "theta;F\n# halt\n\n0;0\n1;2'345\n": r"line 5, column 2 .* without marks between thousands",
     "theta [deg];F [N]\n0;0\n90;\n": r"line 3, column 2 \(value\): the cell is empty; every row needs",

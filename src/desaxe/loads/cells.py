@@ -25,6 +25,7 @@ from ..units.text import plain_number
 MOST_BYTES = 100_000_000  # of a file
 SHEETS = (".xlsx", ".xlsm", ".xls", ".ods")
 MISSING = frozenset(("", "nan", "na", "<na>", "n/a", "#n/a", "nat", "none", "null", "-", "--"))
+DECIMAL_COMMA = "a decimal comma needs semicolons or tabs between the columns"
 _BATCH = 2_000  # rows at once, which a processor's cache holds
 _SAMPLE = 60  # lines by which the separator is known
 _SEPARATORS = (";", "\t", " ", ",")
@@ -61,6 +62,17 @@ class Cells:
     def head(self, most: int = 1000) -> list[list[str]]:
         """The cells of the first rows."""
         return [cells for _, cells in islice(self.rows(), most)]
+
+    def require_width(self, heading: Sequence[str]) -> None:
+        """ValueError for a line with more cells than the heading, as decimal commas between commas make."""
+        numbers = [self.number(cell) for cell in heading if cell.strip()]
+        if self.decimal_comma or len(numbers) < 2 or any(number is not None for number in numbers):
+            return  # a line above the columns
+        for index, row in enumerate(self.head()[self.start :]):
+            beyond = next((k for k, cell in enumerate(row) if k >= len(heading) and cell.strip()), None)
+            if beyond is not None:
+                problem = f"a cell beyond the heading's {len(heading)}; {DECIMAL_COMMA}"
+                self.refuse(index, beyond, "no heading", problem)
 
     def number(self, cell: str) -> float | None:
         """The number of a cell, NaN of a missing one; None for anything else."""
@@ -126,7 +138,7 @@ def _remedy(cell: str) -> str:
     if re.search(r"\d[.,' \u00a0\u202f]\d{3}(?!\d)", cell):
         return "write it without marks between thousands"
     if re.search(r"\d,\d", cell):
-        return "a decimal comma needs semicolons or tabs between the columns"
+        return DECIMAL_COMMA
     return "write a number such as 12.5, without a unit"
 
 

@@ -108,6 +108,7 @@ def _headings(cells: Cells) -> list[list[str]]:
             "the first column has no heading, as the index of a frame that was written without index=False"
         )
         raise ValueError(f"{cells.name}: {problem}")
+    cells.require_width(max(headings, key=len))
     return [_paired(row, len(head[start])) for row in headings]
 
 
@@ -165,5 +166,6 @@ def named_columns(
         headings = {
             k: Heading(name, unit or spelled(units[k]) or None) for k, (name, unit) in headings.items()
         }
+    cells.require_width(row)
     values = cells.numbers({index: heading.name for index, heading in headings.items()})
     return dict(zip(headings.values(), values, strict=True))
