@@ -108,7 +108,7 @@ def _check_chain(definition: Definition, known: Mapping[str, Definition]) -> Non
         depth[other.name] = 1 + max((depth.get(base, 0) for base in _bases(other)), default=0)
     if definition.name in depth:
         raise ValueError(f"{definition.name}: it would be defined by itself")
-    if max(depth.values(), default=0) >= DEEPEST:
+    if max(depth.values(), default=0) > DEEPEST:
         raise ValueError(f"{definition.name}: more than {DEEPEST} definitions that use one another")
 
 
