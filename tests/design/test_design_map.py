@@ -39,8 +39,10 @@ def test_labels(plane):
     assert plane.stroke.attrs["units"] == "m"
     assert plane.absmax_a_C.attrs == {
         "units": "m/s^2",
+        "quantity": "a_C",
         "long_name": "largest magnitude over a turn: " + dx.quantities()["a_C"].meaning,
     }
+    assert plane.absmax_a_C_wrt_ec.attrs["quantity"] == "a_C_wrt_ec"
     assert plane.stroke_wrt_BC.attrs["units"] == "1"
     assert plane.max_pressure_angle_wrt_ec.attrs["units"] == "rad/m"
     assert plane.absmax_a_C_wrt_ec.attrs["units"] == "1/s^2"

@@ -7,15 +7,15 @@ import numpy as np
 
 from ..evaluation.arrays import as_array
 from ..evaluation.labels import STATUS_FLAGS, import_xarray, input_attributes, provenance, with_loads
+from ..evaluation.reductions.own_measure import OwnMeasure
 from ..loads.resolve import split
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs, with_known_keywords
 from ..mechanism.names import LENGTHS, sensitivity
-from ..mechanism.quantity_units import unit_of
+from ..mechanism.quantity_units import SI, unit_of
 from ..runtime.request import check_common
 from ..support.forks import IMPORTS
-from ..units.text import quotient
 from .feasibility.arrays import KINDS, of_arrays
 from .measures import Measure, checked, measured, text_of
 
@@ -63,14 +63,14 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
     variables = _feasible(designs, shape, dimensions)
     for measure, found in measured(wanted, designs | loads, branch).items():
         name, meaning = _name(measure), _meaning(measure)
-        rows = {name: (found.value, str(unit_of(measure)), meaning)}
+        rows = {name: (found.value, _about(measure), meaning)}
         for p, slope in found.gradient.items() if derivatives else ():
-            rows[f"{name}_wrt_{p}"] = slope, _slope_unit(measure, p), f"{meaning}, by {p}"
-        for row, (values, unit, words) in rows.items():
+            rows[f"{name}_wrt_{p}"] = slope, _about(measure, p), f"{meaning}, by {p}"
+        for row, (values, about, words) in rows.items():
             if row in variables and measure != "margin":
                 raise ValueError(f"design_map: two variables would be called {row}; ask for them one by one")
             array = np.broadcast_to(values, designs["ec"].shape).reshape(shape)
-            variables[row] = (dimensions, array, {"units": unit, "long_name": words})
+            variables[row] = (dimensions, array, {**about, "long_name": words})
     import_xarray("design_map")
     with IMPORTS:
         import xarray
@@ -115,14 +115,13 @@ def _name(measure: Measure) -> str:
     return text_of(measure).replace(" ", "_")
 
 
-def _slope_unit(measure: Measure, parameter: str) -> str:
-    """The unit of a derivative, in its simplest form where it has a catalogued one or is a plain number."""
-    if isinstance(measure, tuple):
-        try:
-            return quantity(sensitivity(measure[-1], parameter)).unit
-        except ValueError:
-            pass
-    return quotient(unit_of(measure), [INPUTS[parameter].unit])
+def _about(measure: Measure, parameter: str = "") -> dict[str, str]:
+    """The unit of a measure, or of its derivative, and its quantity."""
+    if isinstance(measure, OwnMeasure):
+        return {"units": str(unit_of("", parameter))}
+    name = measure if isinstance(measure, str) else measure[-1]
+    name = sensitivity(name, parameter) if parameter else name
+    return {"units": SI.of(name).unit, "quantity": name}
 
 
 def _meaning(measure: Measure) -> str:

@@ -1,11 +1,9 @@
 """Results in other units than SI: labelled ones, answers, numbers."""
 
 import copy
-import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..compiler.languages.numba.reductions import EXTREMES, KINDS
 from ..mechanism.inputs import INPUTS
 from ..mechanism.quantity_units import SI, UnitSystem, conversion_of
 from ..support.answer import Answer
@@ -16,8 +14,7 @@ from ..units.system import Conversion
 if TYPE_CHECKING:
     import xarray as xr
 
-# An extreme's position along an axis: a_C_absmax_theta, T_in_wrt_ec_max_min_AB, peak_min_a_C_theta.
-_ALONG = re.compile(rf"(?:_(?:{'|'.join(EXTREMES)})|^peak_.*)_({'|'.join(INPUTS)})$")
+
 FLAGS = ("status", "can_turn", "kind")
 
 
@@ -77,17 +74,15 @@ def in_units(
     found: Any,
     units: UnitSystem,
     given: Mapping[str, Any] | None = None,
-    names: Mapping[str, str] | None = None,
     as_quantity: bool = False,
 ) -> Any:
     """A result in SI units in others: an Answer by the units that it knows, a Dataset, its attributes too.
 
     given        coordinates that were given as plain numbers in these units, and are kept as they are
-    names        variable -> the quantity that it is about, where its name does not say so
     as_quantity  numbers as pint quantities instead (extra `units`)
     """
     if not isinstance(found, Answer):
-        return _dataset_in_units(found, units, given, names, as_quantity)
+        return _dataset_in_units(found, units, given, as_quantity)
     shown = Shown(units, as_quantity)
     result = copy.copy(found)
     for key, value in found.items():
@@ -101,7 +96,6 @@ def _dataset_in_units(
     dataset: "xr.Dataset",
     units: UnitSystem,
     given: Mapping[str, Any] | None,
-    names: Mapping[str, str] | None,
     as_quantity: bool,
 ) -> "xr.Dataset":
     """A Dataset in other units, its attributes too; see `in_units`."""
@@ -110,7 +104,9 @@ def _dataset_in_units(
         array = dataset[key]
         if key in FLAGS or array.dtype.kind not in "fc" or "units" not in array.attrs:
             continue
-        conversion = conversion_of_variable(units, (names or {}).get(key, key), array.attrs["units"])
+        name, unit = array.attrs.get("quantity", key), array.attrs["units"]
+        known = SI.find(name) == Conversion(unit) and units.find(name)
+        conversion = known or units.of_unit(unit)
         lazy = array.chunks is not None  # a sweep's, which may be larger than memory
         values = array.data / float(conversion.si) if lazy else conversion.shown(array.values)
         if given is not None and key in given:
@@ -150,30 +146,3 @@ def _scene_of(before: "xr.Dataset", after: "xr.Dataset") -> str:
     told = dict(zip(old, new, strict=True))
     what, mark, numbers = str(before.attrs["scene"]).partition("; ")
     return what + mark + ", ".join(told.get(part, part) for part in numbers.split(", "))
-
-
-def conversion_of_variable(units: UnitSystem, name: str, unit: str) -> Conversion:
-    """The conversion of a variable with this SI unit: that of the quantity that its name is about."""
-    along = _ALONG.search(name)
-    if along and INPUTS[along[1]].unit == unit:
-        return units.of(along[1])
-    base = name.removeprefix("peak_")
-    stripped = [base.removeprefix(f"{kind}_") for kind in KINDS]
-    words = base.split("_")  # a_C_max_mean, Y_at_60_deg
-    stripped += ["_".join(words[:count]) for count in range(len(words) - 1, 0, -1)]
-    for known in dict.fromkeys([name, *stripped]):
-        found = _conversion_of_quantity(units, known, unit)
-        if found is not None:
-            return found
-    return units.of_unit(unit)
-
-
-def _conversion_of_quantity(units: UnitSystem, name: str, unit: str) -> Conversion | None:
-    """The conversion of a quantity with this SI unit, or of the derivative of one; else None."""
-    known = SI.find(name)
-    if known is not None and known.unit == unit:
-        return units.of(name)
-    base, _, parameter = name.rpartition("_wrt_")
-    if parameter in INPUTS and SI.find(base) is not None and SI.slope(base, parameter).unit == unit:
-        return units.slope(base, parameter) if units.quotients else Conversion(unit)
-    return None

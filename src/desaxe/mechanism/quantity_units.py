@@ -142,14 +142,14 @@ def _simplified(name: str, quotient: str) -> str:
         return quotient
 
 
-class Of(str):
+class QuantityUnit(str):
     """The SI unit of a quantity, an input or a measure, or of its derivative by another one."""
 
     name: str = ""
     by: str = ""
 
 
-def unit_of(name: Any, by: Any = "") -> Of:
+def unit_of(name: Any, by: Any = "") -> QuantityUnit:
     """The unit of a name, or of a measure such as ("absmax", "a_C"); "1" where there is none."""
     told = [part[-1] if isinstance(part, (tuple, list)) else part for part in (name, by)]
     return (_unit_of if register().rows else _remembered_unit)(
@@ -157,8 +157,8 @@ def unit_of(name: Any, by: Any = "") -> Of:
     )
 
 
-def _unit_of(name: str, by: str) -> Of:
-    unit = Of(_conversion(SI, name, by).unit)
+def _unit_of(name: str, by: str) -> QuantityUnit:
+    unit = QuantityUnit(_conversion(SI, name, by).unit)
     unit.name, unit.by = name, by
     return unit
 
@@ -166,7 +166,7 @@ def _unit_of(name: str, by: str) -> Of:
 _remembered_unit = lru_cache(maxsize=4096)(_unit_of)  # where no quantity of a user's own can change it
 
 
-def units_of(names: Iterable[str]) -> dict[str, Of]:
+def units_of(names: Iterable[str]) -> dict[str, QuantityUnit]:
     """The units of answers whose keys are the names of what they are."""
     return {name: unit_of(name) for name in names}
 
@@ -200,14 +200,14 @@ def units_of_extreme(name: str, found: Mapping[Any, Any]) -> dict[str, Any]:
     }
 
 
-def slopes_of(name: Any, parameters: Iterable[Any]) -> dict[Any, Of]:
+def slopes_of(name: Any, parameters: Iterable[Any]) -> dict[Any, QuantityUnit]:
     """The units of the derivatives of a quantity by some parameters."""
     return {parameter: unit_of(name, parameter) for parameter in parameters}
 
 
 def conversion_of(unit: str, system: UnitSystem) -> Conversion:
     """The conversion of numbers in this SI unit; that of the quantity itself where the unit knows it."""
-    if not isinstance(unit, Of):
+    if not isinstance(unit, QuantityUnit):
         return system.of_unit(unit)
     if register().rows:
         return _conversion(system, unit.name, unit.by)

@@ -18,7 +18,7 @@ from ..support.shown import with_unit
 from ..support.text_table import table as text_table
 from ..sweeps.peak_step import WORDS
 from .content import Content, Peak
-from .parts.extremes import SIDEWAYS, ClaimResult, PeakResult, groups_of, peaks_in_units
+from .parts.extremes import SIDEWAYS, ClaimResult, PeakResult, groups_of
 from .parts.motor import MotorResult
 from .parts.turning import FeasibilityResult
 from .run import CheckResult, Run
@@ -34,7 +34,7 @@ def report(content: Content, result: Run, units: UnitSystem) -> str:
     """The whole report, in these units."""
     peaks = result.peaks
     if not content.units:  # the data of peaks are in SI units then
-        peaks = tuple(found._replace(dataset=peaks_in_units(found, units)) for found in peaks)
+        peaks = tuple(found._replace(dataset=in_units(found.dataset, units)) for found in peaks)
     parts = [content.title] if content.title else []
     parts += [checks_report(result.checks)] if result.checks else []
     parts += [feasibility_report(result.feasibility, units)] if result.feasibility else []

@@ -12,7 +12,7 @@ from ..mechanism.quantity_units import UnitSystem
 from ..support.progress import Progress, Steps
 from ..support.shown import printable
 from .content import Check, Content, Peak, PictureRequest
-from .parts.extremes import PeakResult, batches, groups_of, peaks_in_units, peaks_of
+from .parts.extremes import PeakResult, batches, groups_of, peaks_of
 from .parts.grid import blocks_of, values_of_grid
 from .parts.motor import MotorResult, steady_of
 from .parts.pictures import draw
@@ -136,7 +136,7 @@ def failure(name: str, error: BaseException) -> str:
 def _peaks(one: Peak, content: Content, steps: Steps) -> PeakResult:
     """Peaks in the units of the scene."""
     found = peaks_of(one, content, steps)
-    return found._replace(dataset=peaks_in_units(found, content.units))
+    return found._replace(dataset=in_units(found.dataset, content.units))
 
 
 def _no_watch(done: int, total: int, what: str) -> None:

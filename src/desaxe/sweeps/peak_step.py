@@ -9,14 +9,12 @@ from numpy.typing import NDArray
 from ..evaluation.axes import Outer
 from ..evaluation.labels import Output, attributes, side_attributes
 from ..loads.angles import cycle
-from ..mechanism.catalogue import quantity
-from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
 from ..mechanism.own import Definition
+from ..mechanism.quantity_units import SI
 from ..mechanism.status import PeakStatus
 from ..peaks.block import GRADIENT, PeakBlock, peak_block
 from ..peaks.designs import KINDS, Sought, plan_of
-from ..units.text import quotient
 
 Array = NDArray[Any]
 WORDS = {"absmax": "largest magnitude", "max": "maximum", "min": "minimum"}
@@ -89,28 +87,27 @@ class PeakStep(NamedTuple):
         name, kind = self.quantity, self.block.sought.kind
         if output == "value":
             own = attributes(name, self.state)
-            return {**own, "long_name": f"{WORDS[kind]} over theta of {own['long_name']}"}
+            words = f"{WORDS[kind]} over theta of {own['long_name']}"
+            return {**own, "long_name": words, "quantity": name}
         if output.startswith(GRADIENT):
-            return slope_attributes(name, output.removeprefix(GRADIENT), self.state)
+            return slope_attributes(name, output.removeprefix(GRADIENT))
         return attributes_beside()[output]
 
 
 def attributes_beside() -> dict[str, dict[str, Any]]:
     """CF attributes of what comes beside the value of a peak, but for its derivatives."""
     return {
-        "theta": {"units": "rad", "long_name": "crank angle of the peak"},
+        "theta": {"units": "rad", "quantity": "theta", "long_name": "crank angle of the peak"},
         "side": side_attributes(),
         "status": {"long_name": STATUS},
     }
 
 
-def slope_attributes(name: str, parameter: str, state: bool) -> dict[str, str]:
+def slope_attributes(name: str, parameter: str) -> dict[str, str]:
     """CF attributes of the derivative of a peak by a parameter."""
-    try:
-        unit = quantity(sensitivity(name, parameter), state).unit
-    except ValueError:  # a derivative that only a peak has
-        unit = quotient(quantity(name, state).unit, [INPUTS[parameter].unit])
-    return {"units": unit, "long_name": f"derivative of the peak by {parameter}"}
+    slope = sensitivity(name, parameter)
+    words = f"derivative of the peak by {parameter}"
+    return {"units": SI.of(slope).unit, "long_name": words, "quantity": slope}
 
 
 def peak_requests(peaks: Any, outer: Outer) -> tuple[PeakRequest, ...]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...evaluation.in_units import Shown, in_units
 from ...mechanism.catalogue import quantity
-from ...mechanism.quantity_units import SI, Of, UnitSystem, conversion_of, unit_of
+from ...mechanism.quantity_units import SI, QuantityUnit, UnitSystem, conversion_of, unit_of
 from ...mechanism.status import FitStatus
 from ...support.answer import Answer
 from ...support.extras import needed
@@ -122,7 +122,7 @@ class Fit(Answer):
         return figure
 
 
-def _unit_of(name: str, model: FittedModel) -> Of:
+def _unit_of(name: str, model: FittedModel) -> QuantityUnit:
     """The unit of an unknown or a quantity: a bias is in the unit of its quantity, a scale in none."""
     measured = model.data.measured
     if any(name == f"{q}_scale" for q in measured):

@@ -48,7 +48,9 @@ class AtPlace(NamedTuple):
         """The output: its type and CF attributes."""
         name, state = self.at.name, self.of.wanted.form.state
         words = f"{quantity(name, state).meaning} at {self.axis} = {self.at.text}"
-        return {self.at.variable: Output(FLOAT, {**attributes(name, state), "long_name": words})}
+        return {
+            self.at.variable: Output(FLOAT, {**attributes(name, state), "long_name": words, "quantity": name})
+        }
 
     def cut(self, lengths: Mapping[str, int]) -> "AtPlace":
         """Prepare the step for blocks of these lengths."""

@@ -93,13 +93,12 @@ class Reduced(NamedTuple):
         """The result of a chain, where it is, and on which side of a jump."""
         variable = chain_name(name, chain)
         method = " ".join(": ".join((*axes, kind_called(kind).method)) for axes, kind in chain)
-        found = {
-            variable: Output(FLOAT, {**attributes(name, self.of.wanted.form.state), "cell_methods": method})
-        }
+        about = attributes(name, self.of.wanted.form.state)
+        found = {variable: Output(FLOAT, {**about, "quantity": name, "cell_methods": method})}
         for axis in extremes_at_end(chain):
-            about = input_attributes(axis)
-            words = f"{about['long_name']} of the {variable.removeprefix(f'{name}_')} of {name}"
-            found[f"{variable}_{axis}"] = Output(FLOAT, {"units": about["units"], "long_name": words})
+            place = input_attributes(axis)
+            words = f"{place['long_name']} of the {variable.removeprefix(f'{name}_')} of {name}"
+            found[f"{variable}_{axis}"] = Output(FLOAT, {**place, "long_name": words, "quantity": axis})
         if self._has_side(chain):
             found[f"{variable}_side"] = Output(np.dtype(np.int8), side_attributes())
         return found

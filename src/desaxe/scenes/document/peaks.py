@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ...evaluation.in_units import in_units
 from ...mechanism.catalogue import quantity
 from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import PeakStatus
@@ -14,7 +15,7 @@ from ...support.shown import with_unit
 from ...sweeps.peak_step import WORDS
 from .. import schema
 from ..content import Content
-from ..parts.extremes import PeakResult, peaks_in_units, peaks_of
+from ..parts.extremes import PeakResult, peaks_of
 from ..reading.requested import peak_of
 from ..report import remarks, slope_text
 from ..schema import SceneError
@@ -28,10 +29,10 @@ def peaks(content: Content, found: tuple[PeakResult, ...], units: UnitSystem) ->
     """The peaks of the scene, and those of its other outputs; None without any."""
     blocks: list[Block] = []
     for one in found:
-        dataset = one.dataset if content.units else peaks_in_units(one, units)
+        dataset = one.dataset if content.units else in_units(one.dataset, units)
         blocks += _blocks(one._replace(dataset=dataset), units)
     for one in _others(content):
-        blocks += _blocks(one._replace(dataset=peaks_in_units(one, units)), units)
+        blocks += _blocks(one._replace(dataset=in_units(one.dataset, units)), units)
     return Section("Peaks", blocks) if blocks else None
 
 

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...evaluation.evaluate import evaluate
-from ...evaluation.in_units import in_units
 from ...evaluation.labels import (
     CONVENTIONS,
     import_xarray,
@@ -17,8 +16,6 @@ from ...evaluation.labels import (
     tell_loads,
 )
 from ...mechanism.catalogue import quantity
-from ...mechanism.names import sensitivity
-from ...mechanism.quantity_units import UnitSystem
 from ...peaks.peak import peak
 from ...support.forks import IMPORTS
 from ...support.progress import Steps
@@ -84,15 +81,6 @@ def peaks_of(one: Peak, content: Content, steps: Steps) -> PeakResult:
     return PeakResult(one, _labelled(one, content, arrays), claims, mirrored)
 
 
-def peaks_in_units(found: PeakResult, units: UnitSystem) -> "xr.Dataset":
-    """The labelled peaks, given in SI units, in others."""
-    slopes = [str(name) for name in found.dataset.data_vars if str(name).startswith("value_wrt_")]
-    quantity = found.peak.quantity
-    names = {name: sensitivity(quantity, name.removeprefix("value_wrt_")) for name in slopes}
-    shown: xr.Dataset = in_units(found.dataset, units, names={**names, "value": quantity})
-    return shown
-
-
 def _found(
     one: Peak, content: Content, columns: Mapping[str, NDArray[np.float64]], steps: Steps
 ) -> dict[str, NDArray[Any]]:
@@ -146,7 +134,7 @@ def _labelled(one: Peak, content: Content, arrays: Mapping[str, NDArray[Any]]) -
         "value": _peak_attributes(one, state),
         **attributes_beside(),
         "increase": {"units": "percent", "long_name": "increase over the baseline"},
-        **{name: slope_attributes(one.quantity, name.removeprefix("value_wrt_"), state) for name in slopes},
+        **{name: slope_attributes(one.quantity, name.removeprefix("value_wrt_")) for name in slopes},
     }
     data = {name: (tuple(one.axes), array, attributes[name]) for name, array in arrays.items()}
     axes = {name: (name, list(values), input_attributes(name)) for name, values in one.axes.items()}
@@ -158,7 +146,11 @@ def _labelled(one: Peak, content: Content, arrays: Mapping[str, NDArray[Any]]) -
 
 def _peak_attributes(one: Peak, state: bool) -> dict[str, str]:
     known = quantity(one.quantity, state)
-    return {"units": known.unit, "long_name": f"{WORDS[one.kind]} of {one.quantity}, {known.meaning}"}
+    return {
+        "units": known.unit,
+        "quantity": one.quantity,
+        "long_name": f"{WORDS[one.kind]} of {one.quantity}, {known.meaning}",
+    }
 
 
 def columns_of(inputs: Mapping[str, Value]) -> dict[str, NDArray[np.float64]]:
