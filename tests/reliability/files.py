@@ -102,7 +102,7 @@ def value_of(path: Path) -> float:
         table = dict(zip(head, np.array(rows, dtype=float).T, strict=True))
         found = xr.Dataset({name.partition(" ")[0]: ("x", column) for name, column in table.items()})
     else:
-        rows = np.genfromtxt(path, delimiter=",", names=True)
+        rows = np.genfromtxt(path, delimiter=",", names=True, skip_header=1)
         found = xr.Dataset({name.partition("_")[0]: ("x", rows[name]) for name in rows.dtype.names})
     numbers = np.stack([found[name].values for name in ("a", "b", "c")])
     return float(numbers[0, 0]) if numbers.shape == (3, 2000) and np.ptp(numbers) == 0.0 else float("nan")

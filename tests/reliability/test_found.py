@@ -12,8 +12,8 @@ import pytest
 import desaxe as dx
 from desaxe.cli import main
 from desaxe.oracle.truth import truth_all
-from desaxe.runtime.written import is_ours
 from desaxe.support.toml import DEEPEST, read_toml
+from desaxe.support.written import is_ours
 
 LENGTHS = {"ec": 0.01, "AB": 0.125, "BC": 0.35}
 MACHINE = {**LENGTHS, "omega0": 157.08}

@@ -45,8 +45,8 @@ def _fit(options: argparse.Namespace) -> int:
     from ..design.fit.data import columns_of
     from ..design.fit.fit import fit
     from ..evaluation.in_units import in_units
-    from ..runtime.written import replacing_ours, require_place
     from ..scenes.scene import scene
+    from ..support.written import replacing_ours, require_place
 
     if options.picture:
         require_place(Path(options.picture), options.overwrite)

@@ -154,10 +154,10 @@ def add_explore(commands: Any) -> None:
 
 
 def _explore(options: argparse.Namespace) -> int:
-    from ..runtime.written import require_place
     from ..scenes.explorer.content import left_out_text
     from ..scenes.explorer.explore import content_of
     from ..scenes.explorer.write import write_page
+    from ..support.written import require_place
 
     place = Path(options.file)
     require_place(place, options.overwrite)

@@ -10,12 +10,12 @@ import numpy as np
 
 from ..evaluation.in_units import Shown, in_units
 from ..mechanism.quantity_units import SI, UnitSystem, units_by_name
-from ..runtime.written import replacing_ours
 from ..scenes.stores.tables import heading
 from ..scenes.stores.workbook import Sheet, require_room, sheets_of, write_workbook
 from ..support.answer import Answer
 from ..support.files import as_path
 from ..support.shown import printable, shown
+from ..support.written import replacing_ours
 
 
 def to_excel(

@@ -7,6 +7,7 @@ from typing import Any
 
 from ..support.files import replacing
 from ..support.forks import IMPORTS
+from ..support.written import SIGNED
 
 
 def save(figure: Any, path: str | PathLike[str], dpi: float | None = None, **options: Any) -> Path:
@@ -24,6 +25,9 @@ def save(figure: Any, path: str | PathLike[str], dpi: float | None = None, **opt
         if hasattr(figure, "to_jshtml"):
             _animation(figure, staged, dpi or 80.0, options)
         else:
+            field = SIGNED.get(target.suffix.lower())
+            if field is not None:
+                options["metadata"] = {field: "desaxe", **options.get("metadata", {})}
             _figure_of(figure).savefig(staged, dpi=dpi or 150.0, **options)
     return target
 

@@ -7,8 +7,6 @@ point          a function of floats for single points
 interpreted    few points in plain Python
 kernels        compiled loops for arrays
 cache          the folder of compiled kernels
-generated      generated texts: files to write, or to compare with those that are there
-written        which files desaxe wrote, and may replace
 wide_margins   which designs may take the plain forms
 near_limit     undecided points, recomputed in double-double
 threads        blocks of an array shared by threads

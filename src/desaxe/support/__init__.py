@@ -2,6 +2,8 @@
 
 extras         a missing optional dependency as one line that says what to install
 files          files written whole or not at all
+written        the mark of outputs, by which desaxe knows what it may replace
+generated      generated texts: files to write, or to compare with those that are there
 locks          a lock across processes
 roots          one root of a function
 panels         functions as polynomials on panels: integrals, roots, extremes

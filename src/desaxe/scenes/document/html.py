@@ -3,8 +3,8 @@
 from base64 import b64encode
 from html import escape
 
-from ...runtime.written import UNSEALED, sealed
 from ...support.template import file_text, filled
+from ...support.written import UNSEALED, sealed
 from .parts import Block, Document, Image, Lines, Text, TextTable
 
 

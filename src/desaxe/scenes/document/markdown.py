@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 from html import escape
 
-from ...runtime.written import UNSEALED, sealed
+from ...support.written import UNSEALED, sealed
 from .html import source_of
 from .parts import Block, Document, Image, Lines, Text
 

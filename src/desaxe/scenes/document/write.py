@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from ...runtime.written import replacing_ours, require_ours
 from ...support.files import check_target, require_writable
 from ...support.shown import printable
+from ...support.written import replacing_ours, require_ours
 from .html import html
 from .markdown import markdown
 from .parts import Block, Document, Image, Section, Text

@@ -13,8 +13,8 @@ from ...mechanism.names import LOADS
 from ...mechanism.own import using
 from ...mechanism.quantity_units import UnitSystem
 from ...runtime.request import as_number, check_common, several
-from ...runtime.written import require_place
 from ...support.forks import IMPORTS
+from ...support.written import require_place
 from .content import FORCES, PageContent, Value, content, forces_first, is_loaded
 from .write import write_page
 

@@ -13,9 +13,9 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.names import parts
 from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import PointStatus
-from ...runtime.written import UNSEALED, replacing_ours, sealed
 from ...support.extras import needed
 from ...support.template import file_text, filled
+from ...support.written import UNSEALED, replacing_ours, sealed
 from ...units.system import DIMENSIONS
 from .content import PageContent, left_out_text
 

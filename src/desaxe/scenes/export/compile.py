@@ -12,11 +12,11 @@ from ...compiler.languages.shared import refuse_taken
 from ...compiler.languages.words import words_of
 from ...mechanism.keywords import with_known_keywords
 from ...mechanism.own import using
-from ...runtime.generated import Generated
-from ...runtime.written import sealed
 from ...support.checks import yes_or_no
 from ...support.files import as_path
+from ...support.generated import Generated
 from ...support.shown import printable, shown
+from ...support.written import sealed
 from ..content import Content
 from ..scene import Scene
 from ..scene import scene as scene_of

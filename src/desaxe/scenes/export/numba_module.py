@@ -22,8 +22,8 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.names import ORDER
 from ...mechanism.program import digest
 from ...runtime.kernels import KernelKey, key_of
-from ...runtime.written import UNSEALED
 from ...support.version import version
+from ...support.written import UNSEALED
 from ..content import Content
 from ..scene import Scene
 from .axes import axes_of, axes_text, chosen_text, own_axes, text_file

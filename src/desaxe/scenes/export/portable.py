@@ -23,8 +23,8 @@ from ...mechanism.program import digest
 from ...mechanism.status import PointStatus
 from ...runtime.request import Request, request
 from ...runtime.specialise import plain_form, specialise
-from ...runtime.written import UNSEALED
 from ...support.version import version
+from ...support.written import UNSEALED
 from ..content import Content
 from ..scene import Scene
 from ..schema import SceneError

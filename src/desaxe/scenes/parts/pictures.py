@@ -6,8 +6,8 @@ from typing import Any
 from ...evaluation.grid import grid
 from ...evaluation.in_units import in_units
 from ...mechanism.quantity_units import UnitSystem
-from ...runtime.written import replacing_ours
 from ...support.forks import IMPORTS
+from ...support.written import replacing_ours
 from ..content import Content, PictureRequest
 from .grid import arrays_of
 

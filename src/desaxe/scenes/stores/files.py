@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ...runtime.written import remember, require_ours
+from ...evaluation.labels import source
 from ...support.files import check_target, kind_of, require_space, staging, swap_in
 from ...support.forks import IMPORTS, imported
 from ...support.shown import printable
+from ...support.written import require_ours, sign_archive
 from .tables import table_of
 from .workbook import sheets_of, write_workbook
 
@@ -52,7 +53,6 @@ def write(
         for file in staged:
             check_place(path.parent / file.name, overwrite)
         for file in staged:
-            remember(file)
             swap_in(file, path.parent / file.name)
     return [path.parent / file.name for file in staged]
 
@@ -84,10 +84,11 @@ def _apart(group: str, peaks: "xr.Dataset") -> "xr.Dataset":
 def _parts(
     values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]"
 ) -> "Iterator[tuple[str | None, xr.Dataset]]":
-    if values is not None:
-        yield None, values
-    for name, peaks in groups.items():
-        yield name, _apart(name, peaks)
+    """The parts by the names of their groups, each with its source, which is the mark of the file."""
+    parts: dict[str | None, xr.Dataset] = {} if values is None else {None: values}
+    parts |= {name: _apart(name, peaks) for name, peaks in groups.items()}
+    for name, part in parts.items():
+        yield name, part.assign_attrs({"source": source(), **part.attrs})
 
 
 def _netcdf(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
@@ -119,10 +120,11 @@ def store_group(path: Path, name: str, part: "xr.Dataset") -> list[Path]:
 
 
 def _csv(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
-    """A table for each part: a column for each dimension and name, units in the heading."""
+    """A table for each part: where it is from, a column for each dimension and name, units in the heading."""
     parts = [*([] if values is None else [values]), *groups.values()]
     for place, part in zip(files_of(path, values is not None, groups), parts, strict=True):
         with open(place, "w", encoding="utf-8", newline="") as file:
+            file.write(f"# {source()}\r\n")
             csv.writer(file).writerows(table_of(part))
 
 
@@ -137,6 +139,7 @@ def _npz(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Datas
     for group, peaks in groups.items():
         arrays |= {f"{group}/{name}": array.values for name, array in peaks.variables.items()}
     np.savez(path, **arrays)
+    sign_archive(path)
 
 
 _STORE = (

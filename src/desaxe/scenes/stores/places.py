@@ -7,9 +7,9 @@ from os import PathLike
 from os.path import abspath
 from pathlib import Path
 
-from ...runtime.written import require_place
 from ...support.extras import needed
 from ...support.files import require_writable
+from ...support.written import require_place
 from ...sweeps.layout import size_text
 from ..content import Content
 from ..parts.extremes import groups_of

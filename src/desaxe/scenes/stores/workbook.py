@@ -30,6 +30,7 @@ def write_workbook(path: Path, sheets: Mapping[str, Sheet]) -> None:
         from xlsxwriter import Workbook
         from xlsxwriter.exceptions import XlsxFileError
     book = Workbook(str(path), {**OPTIONS, "tmpdir": str(path.parent)})
+    book.set_properties({"author": "desaxe"})
     bold, taken = book.add_format({"bold": True}), set[str]()
     try:
         for name, rows in sheets.items():

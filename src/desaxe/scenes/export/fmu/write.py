@@ -12,11 +12,11 @@ from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
 
-from ....runtime.generated import Generated
-from ....runtime.written import replacing_ours, require_place, sealed
 from ....support.extras import needed
+from ....support.generated import Generated
 from ....support.shown import printable
 from ....support.version import version
+from ....support.written import replacing_ours, require_place, sealed
 from ...content import Content
 from ...scene import Scene
 from ...schema import SceneError
