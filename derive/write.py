@@ -48,7 +48,7 @@ def inputs_digest() -> str:
     library = Path(compiler.__file__).resolve().parents[1]
     files = [
         *HERE.rglob("*.py"),
-        *(library / "compiler").rglob("*.py"),
+        *(path for path in (library / "compiler").rglob("*.py") if path.parent.name != "llvm"),
         *(library / name for name in LIBRARY),
     ]
     for path in sorted(files, key=_place):

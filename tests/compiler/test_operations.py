@@ -18,6 +18,7 @@ from desaxe.compiler.languages.python import SCOPE
 from desaxe.compiler.operations import OPERATIONS, result_type
 from desaxe.compiler.program import Line, Program
 from desaxe.oracle.truth import ulp_error
+from desaxe.runtime.executor import CompiledKernel
 from tests.compiler.programs import same_bits
 
 TINY, LEAST, MOST = 5e-324, 2.2250738585072014e-308, 1.7976931348623157e308
@@ -99,9 +100,8 @@ def test_the_python_spelling_is_ieee(op):
     ]
 
 
-@cache
-def numba_spellings():
-    """One kernel with an output for each operation; truth comes in as 0 < x and goes out as 1 or 0."""
+def every_operation():
+    """A program with an output for each operation; truth comes in as 0 < x and goes out as 1 or 0."""
     lines = [Line(f"is_{name}", "lt", (0.0, name), "bool") for name in "abc"]
     for op in OPS:
         row = OPERATIONS[op]
@@ -109,9 +109,13 @@ def numba_spellings():
         kind = "bool" if row.signature[-1] == "b" else "f64"
         lines.append(Line(f"_{op}", op, tuple(names), kind))
         lines.append(Line(f"out_{op}", "select" if kind == "bool" else "copy", shown(f"_{op}", kind)))
-    program = Program(("a", "b", "c"), tuple(lines), tuple(f"out_{op}" for op in OPS), {})
+    return Program(("a", "b", "c"), tuple(lines), tuple(f"out_{op}" for op in OPS), {})
+
+
+@cache
+def numba_spellings():
     scope = {}
-    exec(emit_numba(hoist(program, {"a": 0, "b": 0, "c": 0}, 1), "every operation"), scope)
+    exec(emit_numba(hoist(every_operation(), {"a": 0, "b": 0, "c": 0}, 1), "every operation"), scope)
     return scope["kernel"]
 
 
@@ -119,13 +123,17 @@ def shown(name, kind):
     return (name, 1.0, 0.0) if kind == "bool" else (name,)
 
 
-def by_numba(op, points):
+def columns_of(op, points):
     columns = [np.zeros(len(points)) for _ in "abc"]
     for position, kind in enumerate(OPERATIONS[op].signature[:-1]):
         columns[position][:] = [point[position] for point in points]
         columns[position] -= 0.5 if kind == "b" else 0.0
+    return columns
+
+
+def by_numba(op, points):
     outs = [np.empty(len(points)) for _ in OPS]
-    numba_spellings()(*columns, *outs)
+    numba_spellings()(*columns_of(op, points), *outs)
     return outs[OPS.index(op)]
 
 
@@ -134,6 +142,22 @@ def test_the_numba_spelling_is_ieee(op):
     points = list(arguments(op))
     answers = zip(points, by_numba(op, points), strict=True)
     assert not [a for a, got in answers if not agree(op, got, float(ieee(op, *a)), a)]
+
+
+@pytest.mark.parametrize("op", OPS)
+def test_the_llvm_spelling_is_ieee(op):
+    """And nothing that a processor fuses or not: bits as numba's."""
+    points = list(arguments(op))
+    columns = columns_of(op, points)
+    outs = [np.empty(len(points)) for _ in OPS]
+    in_llvm().run(dict(zip("abc", columns, strict=True)), outs)
+    answers = zip(points, outs[OPS.index(op)], strict=True)
+    assert not [a for a, got in answers if not agree(op, got, float(ieee(op, *a)), a)]
+
+
+@cache
+def in_llvm():
+    return CompiledKernel(hoist(every_operation(), {"a": 0, "b": 0, "c": 0}, 1))
 
 
 def test_quarter_turns_go_round():

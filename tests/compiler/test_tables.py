@@ -9,6 +9,7 @@ import pytest
 
 from desaxe.compiler.builder import module_text, with_sources
 from desaxe.compiler.interpret import run_exactly, run_in_doubles
+from desaxe.compiler.kernel import hoist
 from desaxe.compiler.languages import language_of
 from desaxe.compiler.languages.arrays import compile_arrays
 from desaxe.compiler.languages.python import compile_python
@@ -18,6 +19,7 @@ from desaxe.compiler.passes.fold import fold_constants
 from desaxe.compiler.passes.value_numbering import value_numbering
 from desaxe.compiler.program import Line, Program, ProgramError, TableName, tables_in, validate
 from desaxe.mechanism.constants import double_constants
+from desaxe.runtime.executor import CompiledKernel
 from tests.compiler.languages.modules import module, written
 from tests.compiler.languages.runners import RUNNERS, caller
 
@@ -31,6 +33,7 @@ LINES = (
 )
 PROGRAM = validate(Program(("x", "way"), LINES, ("p", "v", "d"), {}))
 EVERY = (*KNOTS, *np.nextafter(KNOTS, -9.0), *np.nextafter(KNOTS, 9.0), -7.0, 0.0, -0.0, 2.0, 9.0)
+EVEN = tuple(k / 4 for k in range(40)), tuple(float(k % 7) for k in range(4 * 2 * 41))
 POINTS = [*itertools.product(map(float, EVERY), (1.0, -1.0, 0.0))]
 ODD = (math.nan, math.inf, -math.inf, 1e300, -1e300)
 
@@ -72,6 +75,17 @@ def test_what_is_no_place_is_looked_up_all_the_same():
         assert piece in (0.0, len(KNOTS))
         assert math.isfinite(x) or math.isnan(value) or math.isinf(value)
         del slope
+
+
+def test_llvm():
+    x, way = np.array(POINTS).T
+    for knots, rows in ((KNOTS, ROWS), EVEN):
+        outs = [np.empty(len(POINTS)) for _ in PROGRAM.outputs]
+        values = {"x": x, "way": way, "F_x": np.array(knots), "F_c": np.array(rows)}
+        kernel = hoist(PROGRAM, {"x": 0, "way": 0}, 1)._replace(given=("F",))
+        CompiledKernel(kernel).run(values, outs)
+        scopes = (run_in_doubles(PROGRAM, {"x": a, "way": b, "F": (knots, rows)}) for a, b in POINTS)
+        assert np.array(outs).T.tolist() == [[scope[name] for name in PROGRAM.outputs] for scope in scopes]
 
 
 def test_numpy():

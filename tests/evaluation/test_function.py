@@ -14,7 +14,7 @@ import pytest
 import xarray
 
 import desaxe as dx
-from desaxe.runtime.native import native_calls
+from desaxe.runtime import native_calls
 
 SIZES = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
 NAMES = ["V_C", "a_C", "status"]

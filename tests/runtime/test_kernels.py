@@ -1,9 +1,6 @@
-"""The two ways of arrays agree; threads, far angles, states; kernels on disk."""
+"""The two ways of arrays agree; threads, far angles, states; the cache folder."""
 
 import math
-import os
-import subprocess
-import sys
 import tempfile
 from collections import Counter
 
@@ -13,9 +10,7 @@ import xarray
 
 import desaxe as dx
 from desaxe.evaluation import arrays as _arrays
-from desaxe.mechanism.program import Variant
 from desaxe.runtime import cache as _cache
-from desaxe.runtime import kernels as _kernels
 from desaxe.runtime import tiers
 from tests.ways import POINT, SIZES, close, columns, take_way
 
@@ -118,57 +113,7 @@ def test_a_state_never_stalls():
     assert dx.evaluate("status", **STATE | {"theta": 100.0, "alpha": -1e9}) == 0
 
 
-# ---- kernels on disk -----------------------------------------------------------------------------
-
-CODE = """
-import sys
-import numpy as np, desaxe as dx
-theta = np.linspace(-4.0, 7.0, 3000)
-value = dx.evaluate("V_B_X", theta=theta, AB=0.125, omega0=157.0)
-compiled = "numba" in sys.modules  # machine code from disk is loaded without it
-print(value.sum().hex(), int(not compiled), int(compiled))
-"""
-
-
-def start(folder, *options, **environment):
-    """A new process that runs one kernel from a cache folder."""
-    return subprocess.Popen(
-        [sys.executable, *options, "-c", CODE],
-        env=os.environ | {"DESAXE_CACHE_DIR": str(folder), "DESAXE_TIER": "compiled"} | environment,
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
-
-
-def answer(process):
-    """The output of a process: its sum, numbers of loaded and compiled kernels, error output."""
-    out, complaints = process.communicate()
-    assert process.returncode == 0, complaints
-    total, hits, misses = out.split()
-    return total, int(hits), int(misses), complaints
-
-
-def test_a_new_process_does_not_compile(tmp_path):
-    first = answer(start(tmp_path, "-W", "error"))
-    second = answer(start(tmp_path, "-W", "error"))
-    assert first[1:] == (0, 1, "")
-    assert second[1:] == (1, 0, "")
-    assert first[0] == second[0]
-
-
-def test_processes_started_together_all_succeed(tmp_path):
-    running = [start(tmp_path / "new" / "folder", "-W", "error") for _ in range(2)]
-    answers = [answer(process) for process in running]
-    assert answers[0][0] == answers[1][0]
-    assert sum(misses for _, _, misses, _ in answers) == 1
-
-
-def test_a_folder_that_cannot_be_written_is_a_warning(tmp_path):
-    blocked, scratch = tmp_path / "a file", tmp_path / "scratch"
-    blocked.write_text("in the way")
-    scratch.mkdir()
-    complaints = answer(start(blocked / "cache", TMPDIR=str(scratch)))[-1]
-    assert "RuntimeWarning: no cache folder can be written" in complaints
-    assert "DESAXE_CACHE_DIR" in complaints
+# ---- the cache folder of what numba compiles ------------------------------------------------------------
 
 
 def test_a_folder_without_permission_is_a_warning(tmp_path, monkeypatch):
@@ -182,23 +127,3 @@ def test_a_folder_without_permission_is_a_warning(tmp_path, monkeypatch):
         found = _cache.folder.__wrapped__()
     assert found.path.parent == tmp_path
     assert not found.lasting
-
-
-def test_a_kernel_of_another_version_is_not_taken_for_this_one(tmp_path, monkeypatch):
-    """A version with other limits: the same request, another kernel."""
-    monkeypatch.setattr(_cache, "folder", lambda: _cache.Folder(tmp_path, True))
-    key = _kernels.KernelKey(("V_B_X",), Variant(state=True), (("branch", 1.0),), (("AB", 0),), 1)
-    values, out = {"theta": 0.0, "omega": 2.0, "AB": np.array([-0.5])}, np.empty(1)
-    _kernels.STORE.load(key).run(values, [out])
-    assert math.isnan(out[0])
-    monkeypatch.setattr(_kernels, "LEAST", {})
-    _kernels.STORE.load(key).run(values, [out])
-    assert out[0] == -1.0
-
-
-def test_a_makeshift_folder_is_not_left_behind(tmp_path):
-    blocked, scratch = tmp_path / "a file", tmp_path / "scratch"
-    blocked.write_text("in the way")
-    scratch.mkdir()
-    answer(start(blocked / "cache", TMPDIR=str(scratch)))
-    assert list(scratch.iterdir()) == []

@@ -39,11 +39,6 @@ def test_looking_ahead_counts_nothing(cold):
     assert [tiers.tier_ahead(KEY, 1_500) for _ in range(2)] == ["interpreted"] * 2
 
 
-def test_a_kernel_on_disk_is_taken(cold, monkeypatch):
-    monkeypatch.setattr(tiers, "is_on_disk", lambda key: True)
-    assert tiers.tier_of(KEY, 100_000, True) == "compiled"
-
-
 @pytest.mark.parametrize("name", tiers.TIERS)
 def test_a_tier_can_be_forced(monkeypatch, name):
     monkeypatch.setenv(tiers.VARIABLE, name)

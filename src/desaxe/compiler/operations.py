@@ -9,8 +9,9 @@ and so is `rounding`, a bound of such terms. `power_of_two` is a size that a Pro
 exactly, so that no square overflows, and multiplies its results with: no value depends on it. `extended_only`
 guards a form of the same value that is of use to `double_digits` alone, which makes it its argument;
 everywhere else it is false.
-`python`, `numba`, `javascript`, `c`, `jax` and `octave` are templates over the argument texts. Plain Python
-raises where IEEE 754 arithmetic answers inf or NaN: its division and square root are guarded in the template.
+`python`, `numba`, `javascript`, `c`, `jax`, `octave` and `llvm` are templates over the argument texts.
+Plain Python raises where IEEE 754 arithmetic answers inf or NaN: its division and square root are guarded in
+the template. Of tables, `llvm` takes the pointers NAME.x and NAME.c and the number of knots NAME.n.
 A table is a constant that stands for two arrays of the module, or of the kernel's arguments: NAME_x, its
 ascending knots, and NAME_c, four coefficients for each piece, in the distance from its left knot; before the
 first knot and after the last one a piece holds that is measured from that knot. The pieces of the way back
@@ -41,6 +42,7 @@ class Operation(NamedTuple):
     c: str
     jax: str
     octave: str
+    llvm: str  # one instruction, {T} the generic type; or an argument or constant alone
     cost: float  # relative to one addition, throughput in a vectorised loop
     exact: Callable[..., Any]  # exact(mp, *args)
     undefined: str = ""  # where the real function has no value
@@ -59,8 +61,21 @@ COLUMNS = _FIELDS[_FIELDS.index("python") : _FIELDS.index("cost")]  # of languag
 def _row(
     name: str, signature: str, text: str, precedence: int, cost: float, exact: Callable[..., Any], **more: Any
 ) -> tuple[str, Operation]:
-    more = dict.fromkeys(COLUMNS, text) | more
+    more = dict.fromkeys(COLUMNS, text) | {"llvm": _llvm_call(name, signature)} | more
     return name, Operation(name, signature, text, precedence, cost=cost, exact=exact, **more)
+
+
+LLVM_TYPES = {"f": "double", "b": "i1", "i": "i64", "T": "{T}"}
+
+
+def _llvm_call(function: str, signature: str) -> str:
+    """A call of a function in LLVM's language; of a table it takes knots, coefficients and their number."""
+    types = {**LLVM_TYPES, "t": "ptr {%d}.x, ptr {%d}.c, i64 {%d}.n"}
+    arguments = [
+        types[letter] % (k, k, k) if letter == "t" else f"{types[letter]} {{{k}}}"
+        for k, letter in enumerate(signature[:-1])
+    ]
+    return f"call {LLVM_TYPES[signature[-1]]} @{function}({', '.join(arguments)})"
 
 
 def _table_row(
@@ -71,7 +86,7 @@ def _table_row(
     def spelled(function: str, ends: str) -> str:
         return f"{function}({', '.join(['{0}', *(f'{{1}}_{end}' for end in ends), '{2}'])})"
 
-    columns = dict.fromkeys(COLUMNS, spelled(name, arrays[1:]))
+    columns = dict.fromkeys(COLUMNS, spelled(name, arrays[1:])) | {"llvm": _llvm_call(name, "ftff")}
     columns |= {"c": spelled(name, f"{arrays[1:]}n"), "octave": spelled(octave, arrays[1:])}
     return _row(name, "ftff", f"{name}({{0}}, {{1}}, {{2}})", CALL, cost, exact, **columns)
 
@@ -106,19 +121,29 @@ def _lookup_slope(mp: Any, x: Any, table: Content, piece: Any) -> Any:
 
 OPERATIONS: dict[str, Operation] = dict(
     [
-        _row("copy", "TT", "{0}", CALL, 0, lambda mp, a: a),
-        _row("add", "fff", "{0} + {1}", 12, 1, lambda mp, a, b: a + b, commutes=True),
-        _row("sub", "fff", "{0} - {1}", 12, 1, lambda mp, a, b: a - b),
-        _row("mul", "fff", "{0} * {1}", 13, 1, lambda mp, a, b: a * b, octave="{0} .* {1}", commutes=True),
+        _row("copy", "TT", "{0}", CALL, 0, lambda mp, a: a, llvm="{0}"),
+        _row(
+            "add", "fff", "{0} + {1}", 12, 1, lambda mp, a, b: a + b, llvm="fadd double {0}, {1}",
+            commutes=True,
+        ),
+        _row("sub", "fff", "{0} - {1}", 12, 1, lambda mp, a, b: a - b, llvm="fsub double {0}, {1}"),
+        _row(
+            "mul", "fff", "{0} * {1}", 13, 1, lambda mp, a, b: a * b,
+            octave="{0} .* {1}", llvm="fmul double {0}, {1}", commutes=True,
+        ),
         _row(
             "div", "fff", "{0} / {1}", 13, 8, lambda mp, a, b: a / b,
-            python="divide({0}, {1})", octave="{0} ./ {1}", undefined="{1} == 0",
+            python="divide({0}, {1})", octave="{0} ./ {1}", llvm="fdiv double {0}, {1}", undefined="{1} == 0",
         ),
-        _row("neg", "ff", "-{0}", 14, 0.5, lambda mp, a: -a),
-        _row("abs", "ff", "fabs({0})", CALL, 0.5, lambda mp, a: abs(a), octave="abs({0})"),
+        _row("neg", "ff", "-{0}", 14, 0.5, lambda mp, a: -a, llvm="fneg double {0}"),
+        _row(
+            "abs", "ff", "fabs({0})", CALL, 0.5, lambda mp, a: abs(a),
+            octave="abs({0})", llvm="call double @llvm.fabs.f64(double {0})",
+        ),
         _row(
             "sqrt", "ff", "sqrt({0})", CALL, 9, lambda mp, a: mp.sqrt(a),
-            python="root({0})", octave="root({0})", undefined="{0} < 0",
+            python="root({0})", octave="root({0})", llvm="call double @llvm.sqrt.f64(double {0})",
+            undefined="{0} < 0",
         ),
         _row("sin", "ff", "sin({0})", CALL, 20, lambda mp, a: mp.sin(a), python="sine({0})"),
         _row("cos", "ff", "cos({0})", CALL, 20, lambda mp, a: mp.cos(a), python="cosine({0})"),
@@ -136,10 +161,14 @@ OPERATIONS: dict[str, Operation] = dict(
             "pow", "fff", "pow({0}, {1})", CALL, 60, lambda mp, a, b: mp.power(a, b),
             python="power({0}, {1})", octave="power_of({0}, {1})",
         ),
-        _row("floor", "ff", "floor({0})", CALL, 1, lambda mp, a: mp.floor(a), python="whole({0})"),
+        _row(
+            "floor", "ff", "floor({0})", CALL, 1, lambda mp, a: mp.floor(a),
+            python="whole({0})", llvm="call double @llvm.floor.f64(double {0})",
+        ),
         _row(
             "copysign", "fff", "copysign({0}, {1})", CALL, 1,
             lambda mp, a, b: abs(a) if b >= 0 else -abs(a),
+            llvm="call double @llvm.copysign.f64(double {0}, double {1})",
         ),
         _row(
             "two_sum_error", "fff", "two_sum_error({0}, {1})", CALL, 5, lambda mp, a, b: a * 0, commutes=True
@@ -148,7 +177,10 @@ OPERATIONS: dict[str, Operation] = dict(
             "two_product_error", "fff", "two_product_error({0}, {1})", CALL, 1, lambda mp, a, b: a * 0,
             commutes=True,
         ),
-        _row("mul_add", "ffff", "mul_add({0}, {1}, {2})", CALL, 1, lambda mp, a, b, c: a * b + c),
+        _row(
+            "mul_add", "ffff", "mul_add({0}, {1}, {2})", CALL, 1, lambda mp, a, b, c: a * b + c,
+            llvm="call double @llvm.fmuladd.f64(double {0}, double {1}, double {2})",
+        ),
         _row("rounding", "ff", "rounding({0})", CALL, 1.5, lambda mp, a: a * 0),
         _row("power_of_two", "ff", "power_of_two({0})", CALL, 6, _power_of_two),
         _row(
@@ -159,28 +191,36 @@ OPERATIONS: dict[str, Operation] = dict(
             "rotated_cos", "ffff", "rotated_cos({0}, {1}, {2})", CALL, 2,
             lambda mp, sine, cosine, quarters: (cosine, -sine, -cosine, sine)[int(quarters) % 4],
         ),
-        _row("lt", "ffb", "{0} < {1}", 6, 1, lambda mp, a, b: a < b),
-        _row("le", "ffb", "{0} <= {1}", 6, 1, lambda mp, a, b: a <= b),
-        _row("eq", "ffb", "{0} == {1}", 6, 1, lambda mp, a, b: a == b, commutes=True),
+        _row(
+            "lt", "ffb", "{0} < {1}", 6, 1, lambda mp, a, b: a < b, llvm="fcmp olt double {0}, {1}"
+        ),
+        _row(
+            "le", "ffb", "{0} <= {1}", 6, 1, lambda mp, a, b: a <= b, llvm="fcmp ole double {0}, {1}"
+        ),
+        _row(
+            "eq", "ffb", "{0} == {1}", 6, 1, lambda mp, a, b: a == b, llvm="fcmp oeq double {0}, {1}",
+            commutes=True,
+        ),
         _row(
             "and", "bbb", "{0} and {1}", 4, 0.5, lambda mp, a, b: a and b,
             numba="{0} & {1}", javascript="({0} && {1})", c="({0} && {1})", jax="logical_and({0}, {1})",
-            octave="({0} & {1})",
+            llvm="and i1 {0}, {1}", octave="({0} & {1})",
         ),
         _row(
             "or", "bbb", "{0} or {1}", 3, 0.5, lambda mp, a, b: a or b,
             numba="{0} | {1}", javascript="({0} || {1})", c="({0} || {1})", jax="logical_or({0}, {1})",
-            octave="({0} | {1})",
+            llvm="or i1 {0}, {1}", octave="({0} | {1})",
         ),
         _row(
             "not", "bb", "not {0}", 5, 0.5, lambda mp, a: not a,
             javascript="!({0})", c="!({0})", jax="logical_not({0})", octave="~({0})",
+            llvm="xor i1 {0}, true",
         ),
-        _row("extended_only", "bb", "extended_only({0})", CALL, 0, lambda mp, a: False),
+        _row("extended_only", "bb", "extended_only({0})", CALL, 0, lambda mp, a: False, llvm="false"),
         _row(
             "select", "bTTT", "{1} if {0} else {2}", 1, 1, lambda mp, c, a, b: a if c else b,
             javascript="({0} ? {1} : {2})", c="({0} ? {1} : {2})", jax="where({0}, {1}, {2})",
-            octave="select({0}, {1}, {2})",
+            octave="select({0}, {1}, {2})", llvm="select i1 {0}, {T} {1}, {T} {2}",
         ),
         _table_row("lookup_piece", "_x", 40, _piece, octave="lookup_piece"),
         _table_row("lookup", "_xc", 12, _lookup, octave="looked_up"),

@@ -206,9 +206,8 @@ def _fill(
     asked = wanted, scalars, columns, axis_of, len(sizes)
     hopeful = False
     if key is None:
-        key = key_of(*asked, hopeful=True)
+        key = key_of(*asked)
         hopeful = tells_unsafe(key)
-        key = key if hopeful else key_of(*asked)
     outs = [out.reshape(sizes) for out in outs]
     if not columns:
         point = point_of(key.names, key.form, key.fixed, key.accuracy)
@@ -221,8 +220,6 @@ def _fill(
         counted = run_in_blocks(key, values, outs, threads)
         if not counted:
             return hopeful and not any(is_extreme(name, value) for name, value in scalars.items())
-        if hopeful and key_of(*asked).far:
-            run_in_blocks(key_of(*asked), values, outs, threads)
         return False
     flat = [out.reshape(-1) for out in outs]
     wide = {name: spread(column, axis_of[name], sizes) for name, column in columns.items()}

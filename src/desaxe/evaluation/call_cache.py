@@ -1,23 +1,21 @@
 """`evaluate` over columns of one shape, repeated: a cache of checked calls and their kernels.
 
-A plan is made when the kernel is in memory. From then on a call checks its inputs, makes room for the
-answers and runs the machine code, by the loop of `runtime.any_stride`, which also looks for angles that are
-too large. Whatever is out of the ordinary goes the general way (`arrays`).
+A plan is made when the kernel is in memory. From then on a call checks its inputs, allocates the outputs and
+runs the machine code. Whatever is out of the ordinary goes the general way (`arrays`).
 """
 
 import struct
 from collections.abc import Callable, Mapping
-from ctypes import CFUNCTYPE, addressof, c_char, c_char_p, c_int64
+from ctypes import addressof, c_char
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.constants import limit_of
 from ..mechanism.inputs import is_good
 from ..mechanism.names import LENGTHS
-from ..runtime.kernels import is_ready, kernel_for, key_of, tells_unsafe
-from ..runtime.native.any_stride import data_of, loop
+from ..runtime.executor import CompiledKernel, is_ready, kernel_for
+from ..runtime.kernels import key_of
 from ..runtime.request import Request
 from ..runtime.specialise import plain_form
 from ..runtime.threads import LONGEST_BLOCK, least_of, run_parts
@@ -29,7 +27,6 @@ from .extremes import MOST as LARGEST
 Array = NDArray[Any]
 FLOAT, STATUS = np.dtype(np.float64), np.dtype(np.int8)
 SMALL = 20_000  # points: so few are run at once, and again if some are left over
-_Loop = CFUNCTYPE(c_int64, c_char_p, c_char_p, c_char_p, c_char_p)
 
 
 class _Call(NamedTuple):
@@ -42,17 +39,13 @@ class _Call(NamedTuple):
 
 
 class _Plan(NamedTuple):
-    """A kernel as a ufunc's inner loop, and the packing of the table of its arguments."""
+    """A kernel, and how its arguments are packed."""
 
-    loop: Callable[[bytes, bytes, bytes, bytes], int]
-    head: bytes  # of the loop's data
-    pack: Callable[..., bytes]  # the numbers of the kernel's table; the loop fills in the rest
-    order: tuple[int, ...]  # of the numbers
-    addresses: Callable[..., bytes]
+    kernel: CompiledKernel
+    pack: Callable[..., bytes]  # addresses
     steps: bytes
     kinds: tuple[tuple[str, np.dtype[Any]], ...]
     refused: list[int]  # the sizes of calls of which points were left over
-    kept: Any
 
 
 _CALLS: dict[int, _Call] = {}
@@ -104,7 +97,7 @@ def planned(
     plan = call.plans.get(tuple(kinds)) or _new_plan(call, tuple(kinds), numbers, columns)
     if plan is None:
         return None
-    return _run(plan, list(numbers.values()), list(columns.values()), shape, out, threads)
+    return _run(plan, numbers, columns, shape, out, threads)
 
 
 def _is_ordinary(name: str, value: float) -> bool:
@@ -131,13 +124,14 @@ _bytes_of = c_char.from_buffer
 
 def _run(
     plan: _Plan,
-    numbers: list[float],
-    columns: list[Array],
+    numbers: Mapping[str, float],
+    columns: Mapping[str, Array],
     shape: tuple[int, ...],
     out: Any,
     threads: int | None,
 ) -> dict[str, Array] | None:
-    size = columns[0].size
+    given = [columns[name] for name in plan.kernel.arguments]
+    size = given[0].size
     if size > SMALL:
         if plan.refused:
             return None
@@ -149,13 +143,13 @@ def _run(
         found = _given(plan, shape, out)
     if found is None:
         return None
-    places = _addresses([*columns, *found.values()])
-    if out is not None and _overlap(places, len(columns), 8 * size):
+    places = _addresses([*given, *found.values()])
+    if out is not None and _overlap(places, len(given), 8 * size):
         return None
-    table = plan.pack(*[numbers[place] for place in plan.order])
+    data = plan.kernel.data(numbers)
     if size > SMALL:
-        return found if _run_in_parts(plan, places, plan.head + table, size, threads) else None
-    left = plan.loop(plan.addresses(*places), _ONE(size), plan.steps, plan.head + table)
+        return found if _run_in_parts(plan, places, data, size, threads) else None
+    left = plan.kernel.call(plan.pack(*places), _ONE(size), plan.steps, data)
     return None if left else found
 
 
@@ -165,7 +159,7 @@ def _run_in_parts(plan: _Plan, places: list[int], data: bytes, size: int, thread
 
     def part(start: int, stop: int) -> None:
         own = [place + start * step for place, step in zip(places, steps, strict=True)]
-        if plan.loop(plan.addresses(*own), _ONE(stop - start), plan.steps, data):
+        if plan.kernel.call(plan.pack(*own), _ONE(stop - start), plan.steps, data):
             plan.refused.append(size)
 
     run_parts(part, size, threads, least_of(len(plan.kinds)), LONGEST_BLOCK)
@@ -209,29 +203,8 @@ def _new_plan(
     if key.far or "theta" in scalars or not is_ready(key):
         return None
     kernel = kernel_for(key)
-    order, own = list(columns), list(scalars)
-    names = [name for name, _ in kernel.axis_of]
-    places: list[int | float] = [float(own.index(n)) if n in scalars else order.index(n) for n in names]
-    places += range(len(order), len(order) + len(wanted.names))
-    # A kernel that counts unsafe points looks at the angles itself.
-    looked_at = "theta" in order and "theta" in names and not tells_unsafe(key)
-    angle = order.index("theta") if looked_at else None
-    head, _ = data_of(kernel.function, places, len(order), angle, limit_of(key.accuracy))
-    ranks = kernel.function.ranks
-    words = "".join("d" if rank < 0 else "24x" for rank in ranks)
     results = tuple((name, STATUS if name == "status" else FLOAT) for name in wanted.shown)
-    steps = [8] * len(order) + [kind.itemsize for _, kind in results]
-    inner = loop()
-    plan = _Plan(
-        _Loop(inner.address),
-        head,
-        struct.Struct(words).pack,
-        tuple(int(place) for place, rank in zip(places, ranks, strict=True) if rank < 0),
-        struct.Struct(f"{len(steps)}q").pack,
-        struct.pack(f"{len(steps)}q", *steps),
-        results,
-        [],
-        (inner, kernel),
-    )
-    call.plans[kinds] = plan
+    steps = [8] * len(kernel.arguments) + [kind.itemsize for _, kind in results]
+    words = struct.Struct(f"{len(steps)}q").pack
+    plan = call.plans[kinds] = _Plan(kernel, words, words(*steps), results, [])
     return plan

@@ -18,9 +18,8 @@ from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LENGTHS, sensitivity
 from ..mechanism.own import Definition, Register, register, register_with, used_by
 from ..mechanism.read import in_si
-from ..runtime.kernels import STRUCTURAL_ZEROS, KernelKey, kernel_for
-from ..runtime.native.any_stride import Bound, bind
-from ..runtime.native.native_calls import point_caller, scalar_of, ufunc_of
+from ..runtime.kernels import STRUCTURAL_ZEROS, KernelKey
+from ..runtime.native_calls import Bound, bind, point_caller, scalar_of, ufunc_of
 from ..runtime.request import Request, as_number, check_common, request, several, standstill
 from ..runtime.specialise import plain_form
 from ..runtime.wide_margins import all_have_wide_margins
@@ -305,14 +304,9 @@ def _compiled(
     wanted = request(names, given, branch, accuracy, known)
     numbers = {n: _fixed_number(n, given, wanted) for n in wanted.inputs if n not in inputs}
     key = _key(wanted, numbers, inputs)
-    kernel = kernel_for(key)
-    order = [name for name, _ in kernel.axis_of]
-    places = [numbers[n] if n in numbers else inputs.index(n) for n in order]
-    places += range(len(inputs), len(inputs) + len(names))
-    angle = inputs.index("theta") if "theta" in inputs and "theta" in order and not key.far else None
     repair = repair_for(key, numbers, inputs, failures)
     kinds = tuple(name == "status" for name in names)
-    return bind(kernel.function, places, len(inputs), angle, limit_of(key.accuracy), repair), kinds
+    return bind(key, numbers, inputs, repair), kinds
 
 
 def _fixed_number(name: str, given: Mapping[str, Any], wanted: Request) -> float:

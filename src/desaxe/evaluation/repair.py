@@ -1,4 +1,4 @@
-"""Repair of points that a kernel cannot decide: angles beyond its limit, and undecided assembly."""
+"""Repair of points that the kernel of a function leaves over."""
 
 import ctypes
 from collections.abc import Mapping, Sequence
@@ -7,61 +7,33 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.constants import limit_of
 from ..mechanism.names import STATUSES
-from ..runtime.kernels import KernelKey, has_near_limit, kernel_for
-from ..runtime.native.any_stride import Repair
-from ..runtime.near_limit import decide
+from ..runtime.kernels import KernelKey
+from ..runtime.left_over import settle
 
 Array = NDArray[Any]
 
 
+Repair = ctypes.CFUNCTYPE(None, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64)
+
+
 def repair_for(
     key: KernelKey, numbers: Mapping[str, float], inputs: Sequence[str], failures: list[BaseException]
-) -> Repair:
-    """The callback of `any_stride.bind` for a kernel; its exceptions are appended to `failures`."""
-    limit = limit_of(key.accuracy)
+) -> Any:
+    """The function that a kernel calls with its arguments if it leaves points over.
 
-    def repair(args: int, size: int, steps: int) -> None:
+    What it raises is appended to `failures`: it cannot pass through the machine code that called.
+    """
+
+    def repair(args: int, lengths: int, steps: int) -> None:
         try:
+            size = ctypes.c_int64.from_address(lengths).value
             columns, outs = _arrays(args, size, steps, key, inputs)
-            _repair(key, numbers, columns, outs, limit)
-        except BaseException as error:  # it cannot pass through the machine code that called
+            settle(key, {**numbers, **columns}, outs)
+        except BaseException as error:
             failures.append(error)
 
-    return repair
-
-
-def _repair(
-    key: KernelKey,
-    numbers: Mapping[str, float],
-    columns: Mapping[str, Array],
-    outs: Sequence[Array],
-    limit: float,
-) -> None:
-    """Recompute these points, each group by its own kernel."""
-    size = outs[0].size
-    theta = np.abs(columns["theta"]) if "theta" in columns and not key.far else np.zeros(size)
-    far = (theta > limit) & (theta < np.inf)
-    for rows, part in ((np.flatnonzero(far), key._replace(far=True)), (np.flatnonzero(~far), key)):
-        if not rows.size or (part is key and not has_near_limit(key)):
-            continue
-        values: dict[str, Any] = {**numbers, **{name: column[rows] for name, column in columns.items()}}
-        places = [out[rows] for out in outs]
-        if part is key:
-            decide(key, values, places)
-        elif key.accuracy == "extended":
-            _refuse(places)
-        elif kernel_for(part).run(values, places):
-            decide(part, values, places)
-        for out, place in zip(outs, places, strict=True):
-            out[rows] = place
-
-
-def _refuse(places: Sequence[Array]) -> None:
-    """Mark angles beyond the limit of double-double as bad input, as `evaluate` over arrays does."""
-    for place in places:
-        place[:] = 4 if place.dtype == np.int8 else np.nan
+    return Repair(repair)
 
 
 def _arrays(

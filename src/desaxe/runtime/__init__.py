@@ -8,7 +8,9 @@ interpreted    few points in plain Python
 kernels        compiled loops for arrays
 cache          the folder of compiled kernels
 wide_margins   which designs may take the plain forms
-near_limit     undecided points, recomputed in double-double
+executor       kernels in machine code
+left_over      points that a kernel leaves over, answered again
+native_calls   a kernel as a ufunc, a C function, a function for numba
 threads        blocks of an array shared by threads
 tiers          plain Python, NumPy or compiled code for a request
 vectorised     Programs in NumPy, for the first call of a request

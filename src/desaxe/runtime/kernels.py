@@ -1,6 +1,6 @@
-"""Kernels by key: compiled once, stored on disk, loaded by the next process.
+"""From a request to the loop nest that answers it: keys and their kernels.
 
-`runtime.modules` compiles the text of a kernel and keeps its machine code.
+Kernels that reduce an axis are compiled by numba and stored (see `native.modules`).
 """
 
 from collections.abc import Mapping, Sequence
@@ -40,7 +40,7 @@ class KernelKey(NamedTuple):
     axis_of: tuple[tuple[str, int], ...]
     axes: int
     accuracy: str = "standard"
-    far: bool = False  # some angle is beyond what the written-out sine and cosine reduce exactly
+    far: bool = False  # angles are beyond what the written-out sine and cosine reduce exactly
     reduce: tuple[str, ...] = ()  # what is taken of the innermost axis: max, mean, ...
 
 
@@ -51,7 +51,7 @@ class CompiledKernel(NamedTuple):
     axis_of: tuple[tuple[str, int | None], ...]
 
     def run(self, values: Mapping[str, Any], outs: Sequence[Any]) -> int:
-        """Fill `outs`; return how many points are undecided (see `near_limit`)."""
+        """Fill `outs`."""
         return self.function(*(values[name] for name, _ in self.axis_of), *outs)
 
 
@@ -61,15 +61,10 @@ def key_of(
     columns: Mapping[str, Any],
     axis_of: Mapping[str, int],
     axes: int,
-    hopeful: bool = False,
 ) -> KernelKey:
-    """The key of a request whose scalars and columns are known.
-
-    hopeful   take the angles of a column as small enough: for a kernel that `tells_unsafe`, and is run first
-    """
+    """The key of a request whose scalars and columns are known."""
     check_angle(wanted.accuracy, scalars.get("theta", 0.0))
-    angles = scalars.get("theta", 0.0) if hopeful else columns.get("theta", scalars.get("theta", 0.0))
-    far = _exceed(angles, constants().limit)
+    far = constants().limit < abs(scalars.get("theta", 0.0))
     zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0]
     fixed = (*wanted.fixed, *zeros)
     axis = tuple(sorted(axis_of.items()))
@@ -91,13 +86,12 @@ def _pays_to_ask(columns: Mapping[str, Any], axis_of: Mapping[str, int]) -> bool
     return bool(lengths * ASKED_AHEAD <= prod(sizes.values()))
 
 
-def _exceed(angles: Any, limit: float) -> bool:
-    """True if a finite magnitude exceeds the limit."""
-    if isinstance(angles, float):
-        return limit < abs(angles)
+def has_large_angles(angles: Any) -> bool:
+    """True if an angle is beyond what the written-out sine and cosine reduce exactly."""
     with IMPORTS:
         import numpy as np
 
+    limit = constants().limit
     # Where their squares add up to less, none is. No test is quicker, and this one starts no threads.
     if np.einsum("i,i->", angles, angles) < 0.5 * limit * limit:
         return False
@@ -116,12 +110,12 @@ def _is_seen(program: Program, angle: str) -> bool:
 
 
 def has_near_limit(key: KernelKey) -> bool:
-    """True if the kernel counts undecided points (see `near_limit`)."""
+    """True if the kernel counts undecided points (see `left_over`)."""
     return key.accuracy == "standard" and not key.reduce and plain_of(key) is not None
 
 
 def tells_unsafe(key: KernelKey) -> bool:
-    """True if the kernel counts the points with an angle too large for it, or an input that is not SAFE.
+    """True if the kernel counts the points with an input that is not SAFE.
 
     So the columns need not be read for that ahead, which takes as long as many a kernel.
     """
@@ -170,7 +164,7 @@ def _loops_of(key: KernelKey) -> Kernel:
 def counting(key: KernelKey) -> Program:
     """The program of a key with one more output, a flag: the point may need a repair.
 
-    It holds for more points than `near_limit` selects, by whatever the two round differently: then the
+    It holds for more points than `left_over` selects, by whatever the two round differently: then the
     points that are answered again do not depend on which others are in the same call.
     """
     program = specialise((*key.names, *REACH), key.form, key.fixed)
@@ -194,6 +188,7 @@ def _unsafe(names: Sequence[str]) -> list[Line]:
     A bad input is NaN, and not unsafe: nothing is left to compute. A crank without length is, to save a line.
     """
     least, most = SAFE
+    names = [name for name in names if name != "theta"]
     lines = [Line(f"{name}_magnitude", "abs", (name,)) for name in names]
     found: list[str] = []
 
@@ -203,10 +198,10 @@ def _unsafe(names: Sequence[str]) -> list[Line]:
 
     for name in names:
         size = f"{name}_magnitude"
-        found.append(tell(f"{name}_large", "lt", constants().limit if name == "theta" else most, size))
+        found.append(tell(f"{name}_large", "lt", most, size))
         if name in ("AB", "BC"):
             found.append(tell(f"{name}_small", "lt", size, least))
-        elif name != "theta":
+        else:
             parts = tell(f"{name}_small", "lt", size, least), tell(f"{name}_some", "lt", 0.0, size)
             found.append(tell(f"{name}_lost", "and", *parts))
     return [*lines, *_joined("or", found, "unsafe")]
@@ -234,15 +229,14 @@ def _where_safe(test: Program, names: Sequence[str]) -> Program:
         return name
 
     for name in names:
-        if name in narrower:
+        if name in narrower or name == "theta":
             continue
         size = f"{name}_magnitude"
         lines.append(Line(size, "abs", (name,)))
         if name != "ec":
-            held.append(needs(f"{name}_below", "le", size, constants().limit if name == "theta" else most))
-        if name != "theta":
-            parts = needs(f"{name}_none", "eq", name, 0.0), needs(f"{name}_above", "le", least, size)
-            held.append(needs(f"{name}_safe", "or", *parts))
+            held.append(needs(f"{name}_below", "le", size, most))
+        parts = needs(f"{name}_none", "eq", name, 0.0), needs(f"{name}_above", "le", least, size)
+        held.append(needs(f"{name}_safe", "or", *parts))
     if len(held) == 1:
         lines[-1] = lines[-1]._replace(name=wide)
     else:
@@ -296,4 +290,4 @@ def _compiled(key: KernelKey, function: Native) -> CompiledKernel:
 
 
 STORE = Store("kernel", source_of, _compiled, MOST_LOADED)
-is_ready, is_on_disk, kernel_for = STORE.is_ready, STORE.is_on_disk, STORE.of
+reduced_for = STORE.of

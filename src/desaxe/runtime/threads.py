@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..support.forks import IMPORTS, in_child
 from ..support.signals import put_off
-from .kernels import KernelKey, kernel_for
+from .executor import kernel_for
+from .kernels import KernelKey, reduced_for
 
 if TYPE_CHECKING:
     from concurrent.futures import Future, ThreadPoolExecutor
@@ -60,21 +61,21 @@ def run_in_blocks(
 ) -> bool:
     """Run the kernel of a key over its outermost axis in as many blocks as there are threads.
 
-    True if it counted points: undecided ones, which are then decided, or unsafe ones (see `tells_unsafe`).
+    True if it left points over, which are settled (see `left_over`), or are not safe (see `tells_unsafe`).
     """
     kernel = kernel_for(key)
     counted: list[int] = []
-    outer = {name for name, axis in kernel.axis_of if axis == 0}
+    outer = {name for name, axis in key.axis_of if axis == 0}
 
     def block(start: int, stop: int) -> None:
         part = {name: v[start:stop] if name in outer else v for name, v in values.items()}
         places = [out[start:stop] for out in outs]
         if kernel.run(part, places):
             with IMPORTS:
-                from .near_limit import decide
+                from .left_over import settle
 
             counted.append(start)
-            decide(key, part, places)
+            settle(key, part, places)
 
     least = LEAST_BLOCK if key.accuracy == "extended" else least_of(len(outs))
     in_blocks(block, outs[0].shape[0], outs[0].size, threads, least)
@@ -157,7 +158,7 @@ def fill_reduced(
     key: KernelKey, values: Mapping[str, Any], length: int, outs: Sequence[Any], threads: int | None
 ) -> None:
     """Fill the outputs of `outputs_of` by the kernel of a key, whose innermost axis has this length."""
-    kernel = kernel_for(key)
+    kernel = reduced_for(key)
     outer = {name for name, axis in kernel.axis_of if axis == 0}
     names = [name for name, _ in kernel.axis_of]
 

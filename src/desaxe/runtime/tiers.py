@@ -9,7 +9,8 @@ import os
 from collections import Counter
 
 from .compiled_only import is_required, is_uncompiled
-from .kernels import KernelKey, is_on_disk, is_ready
+from .executor import is_ready
+from .kernels import KernelKey
 
 VARIABLE = "DESAXE_TIER"
 INTERPRETED, NUMPY, COMPILED = TIERS = ("interpreted", "numpy", "compiled")
@@ -52,4 +53,4 @@ def tier_ahead(key: KernelKey, size: int, numpy_pays: bool = False) -> str:
     if points < BREAK_EVEN:
         return INTERPRETED
     once = numpy_pays and points == size <= NUMPY_PAYS
-    return NUMPY if once and not is_on_disk(key) else COMPILED
+    return NUMPY if once else COMPILED

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.runtime import kernels as _kernels
-from desaxe.runtime import tiers
+from desaxe.runtime import executor, tiers
 from desaxe.runtime.kernels import kernel_of
 from desaxe.scenes.parts.grid import plan_of_grid
 from tests.example_scenes import COMPACTOR, SMALL
@@ -125,7 +124,7 @@ def _size(axis):
 
 
 def test_the_break_even_is_the_one_that_holds(monkeypatch):
-    monkeypatch.setattr(_kernels.STORE, "load", None)  # whoever compiles fails
+    monkeypatch.setattr(executor, "CompiledKernel", None)  # whoever compiles fails
     points = {"start": 0, "stop": 1, "num": tiers.BREAK_EVEN - 1}
     few = free(CONCENTRIC, "motion", "theta", points)
     assert dx.explain(few)["run"]["way"] == "plain Python"
@@ -144,8 +143,6 @@ def test_what_is_cached(reduce):
     dx.scene(scene).run()
     after = dx.explain(scene)
     assert after["run"]["cached"] == "memory"
-    _kernels.STORE.clear()
-    assert dx.explain(scene)["run"]["cached"] == "disk"
 
 
 def test_memory_is_that_of_the_result():

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...compiler.languages.numba.reductions import KINDS, outputs_of
 from ...mechanism.own import Definition
-from ...runtime.kernels import KernelKey
+from ...runtime.kernels import KernelKey, has_large_angles
 from ...runtime.threads import fill_reduced
 from ...runtime.tiers import COMPILED, tier_of
 from ..axes import Outer
@@ -114,6 +114,7 @@ class Reduced(NamedTuple):
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The outputs of a block by name, from the values along each of its `axes`."""
         compiled = self.key is not None and tier_of(self.key, self._points(values, self.of.dims)) == COMPILED
+        compiled = compiled and not ("theta" in values and has_large_angles(values["theta"]))
         fields, counts = self._chained(self.of, values, compiled, threads)
         total = self._points(values, self.reductions.axes)
         return self._named(fields, {name: total - count for name, count in counts.items()}, values)

@@ -22,8 +22,8 @@ from ...mechanism.names import STATUSES
 from ...mechanism.own import using
 from ...mechanism.program import digest
 from ...mechanism.quantity_units import UnitSystem
-from ...runtime.kernels import KernelKey, is_ready, kernel_of, source_of
-from ...runtime.native.modules import path_of
+from ...runtime.executor import is_ready
+from ...runtime.kernels import STORE, KernelKey, kernel_of
 from ...runtime.request import Request
 from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available
@@ -240,7 +240,7 @@ def _loop(loop: LoopCost, points: int) -> dict[str, Any]:
 
 def _run(content: Content, found: GridKernel, compiled: bool) -> dict[str, Any]:
     """The execution of the grid: tier, threads, what is cached."""
-    cached, path = _cached(found.key)
+    ready = STORE.is_ready if found.key.reduce else is_ready
     threads = max(1, min(content.threads or available(), found.points // LEAST_BLOCK, found.sizes[0]))
     return {
         "way": "compiled" if compiled else "plain Python",
@@ -250,17 +250,8 @@ def _run(content: Content, found: GridKernel, compiled: bool) -> dict[str, Any]:
         "far_angles": found.key.far,
         "wide_margins": found.key.form.wide_margins,
         "threads": threads if compiled else 1,
-        "cached": cached,
-        "module": path,
+        "cached": "memory" if ready(found.key) else "no",
     }
-
-
-def _cached(key: KernelKey) -> tuple[str, str]:
-    """The state of a kernel ("memory", "disk" or "no"), and the file of its machine code."""
-    path = path_of("kernel", source_of(key))
-    if is_ready(key):
-        return "memory", str(path)
-    return ("disk" if path.exists() else "no"), str(path)
 
 
 def _memory(plan: Plan, found: GridKernel) -> dict[str, int]:

@@ -140,13 +140,9 @@ def _how(plan: Mapping[str, Any]) -> str:
     points = f"{plan['points']:,} point{'s' if plan['points'] != 1 else ''}"
     forced = f"{points}; DESAXE_TIER = {run['forced']}" if run["forced"] else ""
     if run["way"] == "compiled":
-        told = {
-            "memory": "in this process already",
-            "disk": "on disk, from an earlier process",
-            "no": "not compiled yet; kept on disk afterwards",
-        }[run["cached"]]
+        told = "in this process already" if run["cached"] == "memory" else "not compiled yet"
         threads = f"{run['threads']} threads" if run["threads"] > 1 else "one thread"
-        lines.append(f"  kernel   compiled with numba in float64, {threads}: {told}")
+        lines.append(f"  kernel   compiled in float64, {threads}: {told}")
         why = f"{points}; from {run['break_even']:,} on (requested in one process) a kernel pays"
         lines.append(f"  why      {forced or why}")
         numbers = [one["name"] for one in plan["inputs"] if one.get("value")]

@@ -21,7 +21,7 @@ from ...mechanism.catalogue import of_design, quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import ORDER
 from ...mechanism.program import digest
-from ...runtime.kernels import KernelKey, key_of
+from ...runtime.kernels import KernelKey, has_large_angles, key_of
 from ...support.version import version
 from ...support.written import UNSEALED
 from ..content import Content
@@ -128,6 +128,8 @@ def _key(content: Content, asked: PortableRequest, order: Sequence[str]) -> Kern
     needed = content.inputs if asked.loads else asked.request.inputs
     columns = {n: np.array(content.inputs[n]) for n in order if n in needed}
     key = key_of(asked.request, numbers, columns, {n: order.index(n) for n in columns}, len(order))
+    if "theta" in columns and has_large_angles(columns["theta"]):
+        key = key._replace(far=True)
     anywhere = key.form._replace(wide_margins=False)  # the module takes other designs, too
     fixed = tuple((dict(key.fixed) | numbers).items())
     kinds = () if content.fused is None else content.fused.kinds

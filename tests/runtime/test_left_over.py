@@ -106,9 +106,9 @@ def test_forces_and_a_given_state(monkeypatch):
 
 def test_what_is_decided_in_the_kernel_is_left_alone(monkeypatch):
     """Next to a change point BC - |u| is tiny, but known: nothing is answered twice."""
-    from desaxe.runtime import near_limit as _undecided
+    from desaxe.runtime import left_over
 
     monkeypatch.setenv("DESAXE_TIER", "compiled")
-    monkeypatch.setattr(_undecided, "decide", None)
+    monkeypatch.setattr(left_over, "kernel_for", None)
     theta = np.pi / 2 + np.geomspace(1e-9, 0.1, 300)
     assert np.isfinite(dx.evaluate("a_C", theta=theta, ec=0.25, AB=0.125, BC=0.375, **SPEED)).all()

@@ -1,16 +1,46 @@
-"""A bound kernel as a NumPy ufunc, as a C function of one point, and as a function for numba's code."""
+"""A kernel with its numbers, as a NumPy ufunc, as a C function of one point, and as a function for numba."""
 
 import ctypes
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from functools import cache
 from typing import Any, NamedTuple
 
-from ...support.forks import IMPORTS, imported
-from .any_stride import Bound
-from .loader import LLVM
+from ..compiler.llvm.machine import compiled
+from ..support.forks import IMPORTS, imported
+from ..support.interrupts import finished
+from .executor import compiled_kernel
+from .kernels import KernelKey
 
 DOUBLE, BYTE = 12, 1  # NumPy's numbers of these types
 NO_IDENTITY = -1
+
+
+class Bound(NamedTuple):
+    """The addresses of a kernel and of the numbers of its calls, and what keeps both alive."""
+
+    loop: int
+    data: int
+    kept: Any
+
+
+def bind(key: KernelKey, numbers: Mapping[str, float], inputs: Sequence[str], repair: Any) -> Bound:
+    """A kernel of these inputs, in their order, which calls `repair` where it leaves points over."""
+    kernel = finished(lambda: compiled_kernel(key, inputs))
+    address = ctypes.cast(repair, ctypes.c_void_p).value or 0
+    packed = kernel.data(numbers, address, _clear_flags())
+    data = ctypes.create_string_buffer(packed, len(packed))
+    return Bound(kernel.code.address, ctypes.addressof(data), (kernel, repair, data))
+
+
+@cache
+def _clear_flags() -> int:
+    """The address of the C library's `feclearexcept`; 0 if it has none."""
+    with suppress(AttributeError, OSError, TypeError):
+        library = ctypes.CDLL(getattr(math, "__file__", None))
+        return ctypes.cast(library.feclearexcept, ctypes.c_void_p).value or 0
+    return 0
 
 
 @cache
@@ -88,9 +118,6 @@ def point_caller(bound: Bound, inputs: int, whole: Sequence[bool]) -> PointCalle
 
     A status is told as a double.
     """
-    with IMPORTS:
-        import llvmlite.binding as llvm
-
     count = inputs + len(whole)
     rows = [
         f"  %args = alloca [{count} x ptr]",
@@ -125,12 +152,9 @@ def point_caller(bound: Bound, inputs: int, whole: Sequence[bool]) -> PointCalle
         "  call void %loop(ptr %args, ptr %size, ptr %steps, ptr %data)",
     ]
     body = "\n".join([*rows, *call, *after, "  ret i64 0"])
-    with LLVM:
-        module = llvm.parse_assembly(f"define i64 @point(ptr %in, ptr %out) {{\n{body}\n}}")
-        target = llvm.Target.from_default_triple().create_target_machine()
-        engine = llvm.create_mcjit_compiler(module, target)
-        engine.finalize_object()
-        return PointCaller(engine.get_function_address("point"), (engine, bound))
+    text = f"define i64 @point(ptr %in, ptr %out) {{\n{body}\n}}"
+    code = finished(lambda: compiled(text, "point"))
+    return PointCaller(code.address, (code, bound))
 
 
 def scalar_of(address: int, inputs: Sequence[str], outputs: int, one: bool, owner: Any) -> Any:

@@ -1,0 +1,7 @@
+"""Kernels to machine code by LLVM, in memory.
+
+ir             operations and loops as LLVM's text
+nest           a Kernel as a module: the entry, its loops, its two forms
+functions.ll   what they call
+machine        text to machine code, which the caller keeps alive
+"""

@@ -1,0 +1,432 @@
+; Functions that the operations of a Program call, all inlined, and the copies of a block's points.
+
+declare double @llvm.fabs.f64(double)
+declare double @llvm.sqrt.f64(double)
+declare double @llvm.floor.f64(double)
+declare double @llvm.copysign.f64(double, double)
+declare double @llvm.fma.f64(double, double, double)
+declare double @llvm.fmuladd.f64(double, double, double)
+declare i64 @llvm.smin.i64(i64, i64)
+declare double @sin(double)
+declare double @cos(double)
+declare double @atan2(double, double)
+declare double @exp(double)
+declare double @log(double)
+declare double @pow(double, double)
+
+; ---- operations --------------------------------------------------------------------------------------
+
+; The rounding error of a + b (Knuth).
+define internal double @two_sum_error(double %a, double %b) alwaysinline {
+  %sum = fadd double %a, %b
+  %of_b = fsub double %sum, %a
+  %of_a = fsub double %sum, %of_b
+  %lost_a = fsub double %a, %of_a
+  %lost_b = fsub double %b, %of_b
+  %error = fadd double %lost_a, %lost_b
+  ret double %error
+}
+
+define internal double @two_product_error(double %a, double %b) alwaysinline {
+  %product = fmul double %a, %b
+  %negative = fneg double %product
+  %error = call double @llvm.fma.f64(double %a, double %b, double %negative)
+  ret double %error
+}
+
+; 2^-51 |a|
+define internal double @rounding(double %a) alwaysinline {
+  %size = call double @llvm.fabs.f64(double %a)
+  %bound = fmul double 0x3CC0000000000000, %size
+  ret double %bound
+}
+
+; The power of two that is not below a, from 2^-960 to 2^960 (Rump).
+define internal double @power_of_two(double %a) alwaysinline {
+  %large = fcmp olt double %a, 0x7BF0000000000000
+  %below = select i1 %large, double %a, double 0x7BF0000000000000
+  %small = fcmp ogt double %below, 0x03F0000000000000
+  %size = select i1 %small, double %below, double 0x03F0000000000000
+  %wide = fmul double 0x4340000000000000, %size
+  %sum = fadd double %wide, %size
+  %step = fsub double %sum, %wide
+  %some = fcmp ogt double %step, 0.0
+  %power = select i1 %some, double %step, double %size
+  ret double %power
+}
+
+define internal double @hypot(double %a, double %b) alwaysinline {
+  %x = call double @llvm.fabs.f64(double %a)
+  %y = call double @llvm.fabs.f64(double %b)
+  %less = fcmp olt double %x, %y
+  %most = select i1 %less, double %y, double %x
+  %least = select i1 %less, double %x, double %y
+  %ratio = fdiv double %least, %most
+  %square = fmul double %ratio, %ratio
+  %sum = fadd double 1.0, %square
+  %root = call double @llvm.sqrt.f64(double %sum)
+  %product = fmul double %most, %root
+  %both = fadd double %most, %least
+  %some = fcmp ogt double %least, 0.0
+  %size = select i1 %some, double %product, double %both
+  %nothing = fsub double %most, %most
+  %infinite = fcmp une double %nothing, 0.0
+  %result = select i1 %infinite, double %both, double %size
+  ret double %result
+}
+
+; Quarter turns: beyond 2^52 the last bits of a double are those of the whole number added to it.
+define internal double @rotated_sin(double %sine, double %cosine, double %quarters) alwaysinline {
+  %shifted = fadd double %quarters, 0x4338000000000000
+  %turns = bitcast double %shifted to i64
+  %value = call double @rotated(double %cosine, double %sine, i64 %turns, i64 %turns)
+  ret double %value
+}
+
+define internal double @rotated_cos(double %sine, double %cosine, double %quarters) alwaysinline {
+  %shifted = fadd double %quarters, 0x4338000000000000
+  %turns = bitcast double %shifted to i64
+  %next = add i64 %turns, 1
+  %value = call double @rotated(double %sine, double %cosine, i64 %turns, i64 %next)
+  ret double %value
+}
+
+define internal double @rotated(double %if_odd, double %if_even, i64 %turns, i64 %halves) alwaysinline {
+  %odd = trunc i64 %turns to i1
+  %value = select i1 %odd, double %if_odd, double %if_even
+  %bits = bitcast double %value to i64
+  %half = lshr i64 %halves, 1
+  %sign = shl i64 %half, 63
+  %signed = xor i64 %bits, %sign
+  %result = bitcast i64 %signed to double
+  ret double %result
+}
+
+; ---- tables ------------------------------------------------------------------------------------------
+
+; The number of the piece at x: where the knots are even, the first guess is right; else a binary search.
+define internal double @lookup_piece(double %x, ptr %knots, ptr %rows, i64 %n, double %way) alwaysinline {
+  %last = add i64 %n, -1
+  %end = getelementptr double, ptr %knots, i64 %last
+  %first = load double, ptr %knots
+  %stop = load double, ptr %end
+  %pieces = uitofp i64 %last to double
+  %length = fsub double %stop, %first
+  %scale = fdiv double %pieces, %length
+  %away = fsub double %x, %first
+  %ratio = fmul double %away, %scale
+  %positive = fcmp ogt double %ratio, 0.0
+  %from = select i1 %positive, double %ratio, double 0.0
+  %most = fsub double %pieces, 1.0
+  %inside = fcmp olt double %from, %most
+  %guess = select i1 %inside, double %from, double %most
+  %index = fptoui double %guess to i64
+  %left = getelementptr double, ptr %knots, i64 %index
+  %next = add i64 %index, 1
+  %right = getelementptr double, ptr %knots, i64 %next
+  %low = load double, ptr %left
+  %high = load double, ptr %right
+  %above = fcmp ole double %low, %x
+  %below = fcmp olt double %x, %high
+  %right_guess = and i1 %above, %below
+  br i1 %right_guess, label %end_search, label %search
+search:
+  %a = phi i64 [ 0, %0 ], [ %a_next, %halve ]
+  %b = phi i64 [ %n, %0 ], [ %b_next, %halve ]
+  %more = icmp ult i64 %a, %b
+  br i1 %more, label %halve, label %end_search
+halve:
+  %sum = add i64 %a, %b
+  %middle = lshr i64 %sum, 1
+  %at = getelementptr double, ptr %knots, i64 %middle
+  %knot = load double, ptr %at
+  %passed = fcmp ole double %knot, %x
+  %past = add i64 %middle, 1
+  %a_next = select i1 %passed, i64 %past, i64 %a
+  %b_next = select i1 %passed, i64 %b, i64 %middle
+  br label %search
+end_search:
+  %place = phi i64 [ %next, %0 ], [ %a, %search ]
+  %back = add i64 %n, 1
+  %returns = fcmp olt double %way, 0.0
+  %offset = select i1 %returns, i64 %back, i64 0
+  %piece = add i64 %place, %offset
+  %number = uitofp i64 %piece to double
+  ret double %number
+}
+
+define internal double @from_knot(double %x, ptr %knots, i64 %n, i64 %number) alwaysinline {
+  %back = add i64 %n, 1
+  %returns = icmp uge i64 %number, %back
+  %there = sub i64 %number, %back
+  %piece = select i1 %returns, i64 %there, i64 %number
+  %some = icmp ugt i64 %piece, 0
+  %before = sub i64 %piece, 1
+  %index = select i1 %some, i64 %before, i64 0
+  %at = getelementptr double, ptr %knots, i64 %index
+  %knot = load double, ptr %at
+  %s = fsub double %x, %knot
+  ret double %s
+}
+
+define internal double @lookup(double %x, ptr %knots, ptr %rows, i64 %n, double %piece) alwaysinline {
+  %number = fptoui double %piece to i64
+  %s = call double @from_knot(double %x, ptr %knots, i64 %n, i64 %number)
+  %row = getelementptr [4 x double], ptr %rows, i64 %number
+  %b_at = getelementptr double, ptr %row, i64 1
+  %c_at = getelementptr double, ptr %row, i64 2
+  %d_at = getelementptr double, ptr %row, i64 3
+  %a = load double, ptr %row
+  %b = load double, ptr %b_at
+  %c = load double, ptr %c_at
+  %d = load double, ptr %d_at
+  %sd = fmul double %s, %d
+  %c_sd = fadd double %c, %sd
+  %s_c = fmul double %s, %c_sd
+  %b_c = fadd double %b, %s_c
+  %s_b = fmul double %s, %b_c
+  %value = fadd double %a, %s_b
+  ret double %value
+}
+
+define internal double @lookup_slope(double %x, ptr %knots, ptr %rows, i64 %n, double %piece) alwaysinline {
+  %number = fptoui double %piece to i64
+  %s = call double @from_knot(double %x, ptr %knots, i64 %n, i64 %number)
+  %row = getelementptr [4 x double], ptr %rows, i64 %number
+  %b_at = getelementptr double, ptr %row, i64 1
+  %c_at = getelementptr double, ptr %row, i64 2
+  %d_at = getelementptr double, ptr %row, i64 3
+  %b = load double, ptr %b_at
+  %c = load double, ptr %c_at
+  %d = load double, ptr %d_at
+  %d3 = fmul double 3.0, %d
+  %sd = fmul double %s, %d3
+  %c2 = fmul double 2.0, %c
+  %c_sd = fadd double %c2, %sd
+  %s_c = fmul double %s, %c_sd
+  %slope = fadd double %b, %s_c
+  ret double %slope
+}
+
+; ---- copies ------------------------------------------------------------------------------------------
+
+; n doubles at steps of some bytes, side by side: where they are, or copied.
+define internal ptr @gathered(ptr %buffer, ptr %from, i64 %step, i64 %n) noinline {
+  %straight = icmp eq i64 %step, 8
+  br i1 %straight, label %there, label %loop
+there:
+  ret ptr %from
+loop:
+  %i = phi i64 [ 0, %0 ], [ %next, %loop ]
+  %bytes = mul i64 %i, %step
+  %at = getelementptr i8, ptr %from, i64 %bytes
+  %value = load double, ptr %at
+  %to = getelementptr double, ptr %buffer, i64 %i
+  store double %value, ptr %to
+  %next = add nuw nsw i64 %i, 1
+  %more = icmp ult i64 %next, %n
+  br i1 %more, label %loop, label %end, !llvm.loop !0
+end:
+  ret ptr %buffer
+}
+
+; Eight doubles, of which n are copied and the others are the last of these.
+define internal void @fill(ptr noalias %buffer, ptr noalias %from, i64 %n) noinline {
+  %last = add i64 %n, -1
+  br label %loop
+loop:
+  %i = phi i64 [ 0, %0 ], [ %next, %loop ]
+  %index = call i64 @llvm.smin.i64(i64 %i, i64 %last)
+  %at = getelementptr double, ptr %from, i64 %index
+  %value = load double, ptr %at
+  %to = getelementptr double, ptr %buffer, i64 %i
+  store double %value, ptr %to
+  %next = add nuw nsw i64 %i, 1
+  %more = icmp ult i64 %next, 8
+  br i1 %more, label %loop, label %end, !llvm.loop !0
+end:
+  ret void
+}
+
+define internal void @scatter_double(ptr %to, i64 %step, ptr %buffer, i64 %n) noinline {
+  %straight = icmp eq ptr %to, %buffer
+  br i1 %straight, label %end, label %loop
+loop:
+  %i = phi i64 [ 0, %0 ], [ %next, %loop ]
+  %from = getelementptr double, ptr %buffer, i64 %i
+  %value = load double, ptr %from
+  %bytes = mul i64 %i, %step
+  %at = getelementptr i8, ptr %to, i64 %bytes
+  store double %value, ptr %at
+  %next = add nuw nsw i64 %i, 1
+  %more = icmp ult i64 %next, %n
+  br i1 %more, label %loop, label %end, !llvm.loop !0
+end:
+  ret void
+}
+
+define internal void @scatter_i8(ptr %to, i64 %step, ptr %buffer, i64 %n) noinline {
+  %straight = icmp eq ptr %to, %buffer
+  br i1 %straight, label %end, label %loop
+loop:
+  %i = phi i64 [ 0, %0 ], [ %next, %loop ]
+  %from = getelementptr i8, ptr %buffer, i64 %i
+  %value = load i8, ptr %from
+  %bytes = mul i64 %i, %step
+  %at = getelementptr i8, ptr %to, i64 %bytes
+  store i8 %value, ptr %at
+  %next = add nuw nsw i64 %i, 1
+  %more = icmp ult i64 %next, %n
+  br i1 %more, label %loop, label %end, !llvm.loop !0
+end:
+  ret void
+}
+
+; How many of n flags are set.
+define internal i64 @count(ptr noalias %flags, i64 %n) noinline {
+  br label %loop
+loop:
+  %i = phi i64 [ 0, %0 ], [ %next, %loop ]
+  %sum = phi i64 [ 0, %0 ], [ %total, %loop ]
+  %at = getelementptr i8, ptr %flags, i64 %i
+  %flag = load i8, ptr %at
+  %one = zext i8 %flag to i64
+  %total = add i64 %sum, %one
+  %next = add nuw nsw i64 %i, 1
+  %more = icmp ult i64 %next, %n
+  br i1 %more, label %loop, label %end
+end:
+  ret i64 %total
+}
+
+; The indices of the flagged of n points; the last is repeated up to a multiple of eight, whose number is told.
+define internal i64 @indices(ptr noalias %flags, i64 %n, ptr noalias %indices) noinline {
+  br label %loop
+loop:
+  %i = phi i64 [ 0, %0 ], [ %next, %loop ]
+  %count = phi i64 [ 0, %0 ], [ %counted, %loop ]
+  %to = getelementptr i64, ptr %indices, i64 %count
+  store i64 %i, ptr %to
+  %at = getelementptr i8, ptr %flags, i64 %i
+  %flag = load i8, ptr %at
+  %one = zext i8 %flag to i64
+  %counted = add i64 %count, %one
+  %next = add nuw nsw i64 %i, 1
+  %more = icmp ult i64 %next, %n
+  br i1 %more, label %loop, label %last
+last:
+  %end = add i64 %counted, -1
+  %end_at = getelementptr i64, ptr %indices, i64 %end
+  %index = load i64, ptr %end_at
+  %up = add i64 %counted, 7
+  %filled = and i64 %up, -8
+  br label %fill
+fill:
+  %k = phi i64 [ %counted, %last ], [ %after, %body ]
+  %some = icmp ult i64 %k, %filled
+  br i1 %some, label %body, label %done
+body:
+  %fill_at = getelementptr i64, ptr %indices, i64 %k
+  store i64 %index, ptr %fill_at
+  %after = add i64 %k, 1
+  br label %fill
+done:
+  ret i64 %filled
+}
+
+define internal void @compress(ptr noalias %to, ptr noalias %from, ptr noalias %indices, i64 %n) noinline {
+  br label %loop
+loop:
+  %i = phi i64 [ 0, %0 ], [ %next, %loop ]
+  %at = getelementptr i64, ptr %indices, i64 %i
+  %index = load i64, ptr %at
+  %source = getelementptr double, ptr %from, i64 %index
+  %value = load double, ptr %source
+  %target = getelementptr double, ptr %to, i64 %i
+  store double %value, ptr %target
+  %next = add nuw nsw i64 %i, 1
+  %more = icmp ult i64 %next, %n
+  br i1 %more, label %loop, label %end, !llvm.loop !0
+end:
+  ret void
+}
+
+define internal void @expand_double(ptr noalias %to, ptr noalias %from, ptr noalias %indices, i64 %n) noinline {
+  br label %loop
+loop:
+  %i = phi i64 [ 0, %0 ], [ %next, %loop ]
+  %at = getelementptr i64, ptr %indices, i64 %i
+  %index = load i64, ptr %at
+  %source = getelementptr double, ptr %from, i64 %i
+  %value = load double, ptr %source
+  %target = getelementptr double, ptr %to, i64 %index
+  store double %value, ptr %target
+  %next = add nuw nsw i64 %i, 1
+  %more = icmp ult i64 %next, %n
+  br i1 %more, label %loop, label %end, !llvm.loop !0
+end:
+  ret void
+}
+
+define internal void @expand_i8(ptr noalias %to, ptr noalias %from, ptr noalias %indices, i64 %n) noinline {
+  br label %loop
+loop:
+  %i = phi i64 [ 0, %0 ], [ %next, %loop ]
+  %at = getelementptr i64, ptr %indices, i64 %i
+  %index = load i64, ptr %at
+  %source = getelementptr i8, ptr %from, i64 %i
+  %value = load i8, ptr %source
+  %target = getelementptr i8, ptr %to, i64 %index
+  store i8 %value, ptr %target
+  %next = add nuw nsw i64 %i, 1
+  %more = icmp ult i64 %next, %n
+  br i1 %more, label %loop, label %end, !llvm.loop !0
+end:
+  ret void
+}
+
+; How many of n angles are finite and beyond a limit.
+define internal i64 @beyond(ptr noalias %angles, i64 %n, double %limit) noinline {
+  %any = icmp sgt i64 %n, 0
+  br i1 %any, label %loop, label %end
+loop:
+  %i = phi i64 [ 0, %0 ], [ %next, %loop ]
+  %sum = phi i64 [ 0, %0 ], [ %total, %loop ]
+  %at = getelementptr double, ptr %angles, i64 %i
+  %angle = load double, ptr %at
+  %size = call double @llvm.fabs.f64(double %angle)
+  %large = fcmp olt double %limit, %size
+  %finite = fcmp olt double %size, 0x7FF0000000000000
+  %both = and i1 %large, %finite
+  %one = zext i1 %both to i64
+  %total = add i64 %sum, %one
+  %next = add nuw nsw i64 %i, 1
+  %more = icmp ult i64 %next, %n
+  br i1 %more, label %loop, label %end
+end:
+  %count = phi i64 [ 0, %0 ], [ %total, %loop ]
+  ret i64 %count
+}
+
+; Call a repair of the points that are left over, and clear the flags that a NaN raises: it is an answer.
+define internal void @finish(i64 %left, ptr %repair, ptr %clear, ptr %args, ptr %lengths, ptr %steps) noinline {
+  %some = icmp ne i64 %left, 0
+  %can = icmp ne ptr %repair, null
+  %do = and i1 %some, %can
+  br i1 %do, label %call, label %flags
+call:
+  call void %repair(ptr %args, ptr %lengths, ptr %steps)
+  br label %flags
+flags:
+  %raised = icmp ne ptr %clear, null
+  br i1 %raised, label %lower, label %end
+lower:
+  %ignored = call i32 %clear(i32 61)
+  br label %end
+end:
+  ret void
+}
+
+!0 = distinct !{!0, !1, !2}
+!1 = !{!"llvm.loop.vectorize.enable", i1 false}
+!2 = !{!"llvm.loop.unroll.disable"}

@@ -1,0 +1,173 @@
+"""Machine code from LLVM's text: optimised for one processor, linked in memory, owned by whoever calls it.
+
+LLVM is called by one thread at a time, and never while the process forks: a child would inherit a lock that
+nobody holds. So a fork waits for this lock and for that of llvmlite, which compilations by numba hold, too.
+"""
+
+import ctypes
+import math
+import platform
+import sys
+import time
+from collections import deque
+from functools import cache
+from itertools import count
+from threading import RLock
+from typing import Any
+
+from ...support.forks import IMPORTS, ForkSafeLock
+
+MATHEMATICS = ("atan2", "cos", "exp", "floor", "fma", "log", "pow", "sin")
+MEMORY = ("memmove", "memset")
+
+
+class _Lock(ForkSafeLock):
+    """The lock of LLVM; when the process forks, that of llvmlite with it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._other: Any = None  # of llvmlite, acquired for a fork
+
+    def acquire_until(self, end: float) -> bool:
+        """Try to acquire both until some time of the monotonic clock."""
+        if not super().acquire_until(end):
+            return False
+        other = _llvmlite_lock()
+        if other is None or other._lock.acquire(timeout=max(end - time.monotonic(), 0.0)):
+            self._other = other
+            return True
+        super().release()
+        return False
+
+    def release(self) -> None:
+        """Release both."""
+        if self._other is not None:
+            self._other._lock.release()
+            self._other = None
+        super().release()
+
+    def renew(self) -> None:
+        """In a child: free both of threads that are not there."""
+        super().renew()
+        other = _llvmlite_lock()
+        if other is not None:
+            other._lock = RLock()
+
+
+def _llvmlite_lock() -> Any:
+    """The lock that llvmlite holds during each call; None as long as it is not imported."""
+    binding = sys.modules.get("llvmlite.binding.ffi")
+    return None if binding is None else binding.lib._lock
+
+
+LOCK = _Lock()
+
+
+class Code:
+    """Machine code in memory, which stays there as long as this object: its address."""
+
+    __slots__ = ("__weakref__", "_tracker", "address")
+
+    def __init__(self, tracker: Any, name: str) -> None:
+        self.address: int = tracker[name]
+        self._tracker = tracker
+
+    def __del__(self) -> None:
+        _UNUSED.append(self._tracker)  # a collection of garbage must not wait for LLVM
+
+
+_UNUSED: deque[Any] = deque()
+_NUMBERS = count()
+
+
+def compiled(text: str, name: str, slp: bool = True) -> Code:
+    """The function of this name of a text, as machine code for this processor."""
+    with LOCK:
+        return _linked(emitted(text, slp=slp), name)
+
+
+def emitted(text: str, target: Any = None, slp: bool = True) -> bytes:
+    """The object file of a text, for a processor (see `target_machine`); this one without.
+
+    slp   vectorise straight code, too, which takes LLVM long where there is much of it
+    """
+    llvm = _llvm()
+    with LOCK:
+        target = target or _host()
+        module = llvm.parse_assembly(text)
+        module.triple, module.data_layout = target.triple, str(target.target_data)
+        module.verify()
+        options = llvm.create_pipeline_tuning_options(speed_level=3)
+        options.loop_vectorization, options.slp_vectorization = True, slp
+        options.loop_interleaving, options.loop_unrolling = False, False
+        builder = llvm.create_pass_builder(target, options)
+        builder.getModulePassManager().run(module, builder)
+        data: bytes = target.emit_object(module)
+        return data
+
+
+def target_machine(triple: str | None = None, cpu: str = "", features: str = "") -> Any:
+    """LLVM's description of a processor: of this one, or by names, the plainest of a triple."""
+    llvm = _llvm()
+    with LOCK:
+        llvm.initialize_all_targets() if triple else llvm.initialize_native_target()
+        llvm.initialize_all_asmprinters() if triple else llvm.initialize_native_asmprinter()
+        triple = triple or _triple()
+        # There code is far from all else: without a table of offsets, which the linker has not.
+        relocation = "static" if "windows" in triple else "default"
+        target = llvm.Target.from_triple(triple)
+        return target.create_target_machine(cpu=cpu, features=features, opt=3, reloc=relocation)
+
+
+def _triple() -> str:
+    """The system's triple; its linker in memory takes ELF alone on Windows."""
+    triple: str = _llvm().get_process_triple()
+    return f"{triple}-elf" if sys.platform == "win32" else triple
+
+
+@cache
+def _llvm() -> Any:
+    with IMPORTS:
+        import llvmlite.binding
+
+    return llvmlite.binding
+
+
+@cache
+def _host() -> Any:
+    llvm = _llvm()
+    return target_machine(None, llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten())
+
+
+@cache
+def _linker() -> Any:
+    """LLVM's linker in memory, of which a process has one."""
+    arm = platform.machine().lower() in ("arm64", "aarch64")
+    return _llvm().create_lljit_compiler(use_jit_link=arm)
+
+
+def _linked(data: bytes, name: str) -> Code:
+    while _UNUSED:
+        _UNUSED.pop().close()
+    library = _llvm().JITLibraryBuilder().add_object_img(data).export_symbol(name)
+    for symbol, address in outside().items():
+        library.import_symbol(symbol, address)
+    try:
+        return Code(library.link(_linker(), f"desaxe {next(_NUMBERS)}"), name)
+    except RuntimeError as error:
+        raise RuntimeError(
+            f"machine code cannot be loaded: {error}. desaxe needs memory that a process may write and then "
+            "run; a system that refuses it (SELinux's execmem, MemoryDenyWriteExecute) has to allow it"
+        ) from None
+
+
+@cache
+def outside() -> dict[str, int]:
+    """The addresses of the functions that machine code may call, by name."""
+    library = ctypes.CDLL("ucrtbase" if sys.platform == "win32" else getattr(math, "__file__", None))
+    functions = {name: getattr(library, name) for name in MATHEMATICS}
+    functions |= {name: getattr(ctypes, name) for name in MEMORY}
+    functions["memcpy"] = ctypes.memmove
+    if sys.platform == "win32":
+        functions["__chkstk"] = getattr(ctypes.WinDLL("ntdll"), "__chkstk")
+    return {name: ctypes.cast(function, ctypes.c_void_p).value or 0 for name, function in functions.items()}

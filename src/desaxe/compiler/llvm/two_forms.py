@@ -1,0 +1,130 @@
+"""The innermost loop of a kernel in two forms: the plain one for most points, the stable one for the rest.
+
+A test of an outer loop picks the form of a row. A test that changes from point to point is answered with the
+plain form for a block of points; those that fail it are gathered, answered by the stable form and put back.
+Where all points of a block fail, the next block is tested first. The value of a point depends on it alone.
+"""
+
+from collections.abc import Sequence
+
+from ..kernel import Kernel
+from ..program import Line
+from .ir import LANES, STORED, WIDE, Body, Loop, loop_of
+
+BIGGEST = 512  # points of a block: their inputs and outputs stay in the first-level cache
+STACK = 32_768  # doubles that all buffers of a block may take
+APART = 72  # doubles between buffers: at a multiple of 4096 bytes a store holds up loads from other buffers
+FLAG = "fails_test"
+
+
+def either_loop(kernel: Kernel, plain: Loop, stable: Loop) -> tuple[Loop, list[str]]:
+    """The loop that runs one of two, and the texts of all three."""
+    assert kernel.close is not None
+    points = _joined("points", (plain, stable), len(kernel.outputs), [kernel.close.test])
+    body = _scope(points, kernel)
+    body.do(f"br i1 %{kernel.close.test}.value, label %wide, label %close")
+    outputs = [f"%to.{k}" for k in range(len(kernel.outputs))]
+    for label, loop in (("wide", plain), ("close", stable)):
+        body.label(label)
+        body.do(f"ret i64 {loop.call(body, '%n', _inputs(points), outputs)}")
+    texts = [loop.text(kernel.types) for loop in (plain, stable)]
+    return points, [*texts, _function(points, kernel, body.rows)]
+
+
+def block_loop(kernel: Kernel, arrays: Sequence[str], stable: Loop) -> tuple[Loop, list[str]]:
+    """The loop over blocks of points, and the texts of all that it calls."""
+    close = kernel.close
+    assert close is not None
+    flag = Line(FLAG, "not", (close.test,), "bool")
+    plain = loop_of("plain", (*kernel.levels[-1], flag), (*kernel.outputs, FLAG), arrays)
+    tests = loop_of("tests", (*close.test_lines, flag), (FLAG,), arrays)
+    loops = plain, tests, stable
+    points = _joined("points", loops, len(kernel.outputs))
+    kinds = [STORED[kernel.types.get(name, "f64")] for name in kernel.outputs]
+    rows = _blocks(points, kernel, plain, tests, stable, kinds)
+    return points, [*(loop.text(kernel.types) for loop in loops), _function(points, kernel, rows)]
+
+
+def _joined(name: str, loops: Sequence[Loop], outputs: int, more: Sequence[str] = ()) -> Loop:
+    """A loop that takes all that these take."""
+    reads, values, tables = (
+        tuple(dict.fromkeys(one for loop in loops for one in getattr(loop, field)))
+        for field in ("reads", "values", "tables")
+    )
+    return Loop(name, reads, tuple(dict.fromkeys((*values, *more))), tables, (), ("",) * outputs)
+
+
+def _inputs(points: Loop) -> dict[str, str]:
+    return {name: f"%{name}.from" for name in points.reads}
+
+
+def _scope(points: Loop, kernel: Kernel) -> Body:
+    return Body(kernel.types, {name: f"%{name}.value" for name in points.values})
+
+
+def _function(points: Loop, kernel: Kernel, rows: Sequence[str]) -> str:
+    parameters = ", ".join(["i64 %n", *points.parameters(kernel.types)])
+    head = f"define internal i64 @{points.name}({parameters}) noinline {WIDE} {{"
+    return "\n".join([head, *rows, "}"])
+
+
+def _blocks(
+    points: Loop, kernel: Kernel, plain: Loop, tests: Loop, stable: Loop, kinds: Sequence[str]
+) -> list[str]:
+    """The instructions of the loop over blocks."""
+    body = _scope(points, kernel)
+    rooms = {name: f"%{name}.room" for name in stable.reads}
+    answers = [f"%room.{k}" for k in range(len(kinds))]
+    block = max(16, min(BIGGEST, (STACK // (len(rooms) + len(answers) + 2) - APART) // 16 * 16))
+    buffers = {"%flags": "i8", "%indices": "i64", **dict.fromkeys(rooms.values(), "double")}
+    buffers |= dict(zip(answers, kinds, strict=True))
+    for buffer, kind in buffers.items():
+        body.do(f"{buffer} = alloca [{block + APART} x {kind}], align 64")
+    body.rows += f"""  %last = sub i64 %n, {LANES}
+  br label %blocks
+blocks:
+  %at = phi i64 [ 0, %0 ], [ %stop, %done ]
+  %fail = phi i1 [ false, %0 ], [ %now, %done ]
+  %left = phi i64 [ 0, %0 ], [ %total, %done ]
+  %more = icmp slt i64 %at, %n
+  br i1 %more, label %block, label %end
+block:
+  %start = call i64 @llvm.smin.i64(i64 %at, i64 %last)
+  %rest = sub i64 %n, %start
+  %size = call i64 @llvm.smin.i64(i64 %rest, i64 {block})""".splitlines()
+    there = {name: body.element("double", f"%{name}.from", "%start") for name in points.reads}
+    outputs = [body.element(kind, f"%to.{k}", "%start") for k, kind in enumerate(kinds)]
+    body.do("br i1 %fail, label %ahead, label %first")
+    body.label("ahead")
+    tests.call(body, "%size", there, ["%flags"])
+    body.rows += """  %failed = call i64 @count(ptr %flags, i64 %size)
+  %all_fail = icmp eq i64 %failed, %size
+  br i1 %all_fail, label %close, label %first
+first:""".splitlines()
+    plain.call(body, "%size", there, [*outputs, "%flags"])
+    body.rows += """  %count = call i64 @count(ptr %flags, i64 %size)
+  %none = icmp eq i64 %count, 0
+  br i1 %none, label %done, label %some
+some:
+  %every = icmp eq i64 %count, %size
+  br i1 %every, label %close, label %mixed
+close:""".splitlines()
+    in_close = stable.call(body, "%size", there, outputs)
+    body.rows += """  br label %done
+mixed:
+  %filled = call i64 @indices(ptr %flags, i64 %size, ptr %indices)""".splitlines()
+    for name, room in rooms.items():
+        body.do(f"call void @compress(ptr {room}, ptr {there[name]}, ptr %indices, i64 %filled)")
+    in_mixed = stable.call(body, "%filled", rooms, answers)
+    for output, answer, kind in zip(outputs, answers, kinds, strict=True):
+        body.do(f"call void @expand_{kind}(ptr {output}, ptr {answer}, ptr %indices, i64 %count)")
+    body.rows += f"""  br label %done
+done:
+  %own = phi i64 [ 0, %first ], [ {in_close}, %close ], [ {in_mixed}, %mixed ]
+  %now = phi i1 [ false, %first ], [ true, %close ], [ false, %mixed ]
+  %total = add i64 %left, %own
+  %stop = add i64 %at, {block}
+  br label %blocks
+end:
+  ret i64 %left""".splitlines()
+    return body.rows

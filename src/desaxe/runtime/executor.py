@@ -1,0 +1,102 @@
+"""The executor: kernels by key, compiled once a process and kept as long as something can call them."""
+
+import math
+import struct
+from collections.abc import Callable, Mapping, Sequence
+from ctypes import CFUNCTYPE, c_char_p, c_int64
+from typing import Any
+
+from ..compiler.kernel import Kernel
+from ..compiler.llvm.machine import Code, compiled
+from ..compiler.llvm.nest import HEAD, NAME, Entry, module_text
+from ..mechanism.constants import limit_of
+from ..support.forks import IMPORTS, ForkSafeLock
+from ..support.interrupts import finished
+from ..support.recent import Recent
+from .kernels import KernelKey, kernel_of
+
+MOST_KEPT = 256  # kernels that nobody else keeps
+_CALL = CFUNCTYPE(c_int64, c_char_p, c_char_p, c_char_p, c_char_p)  # lets go of the GIL while it runs
+
+
+class CompiledKernel:
+    """A kernel in machine code, which lives as long as this object.
+
+    arguments   the inputs that are arrays, in their order
+    scalars     those that are numbers, in theirs
+    call        the entry (see `compiler.llvm.nest`), which takes packed words
+    """
+
+    def __init__(
+        self,
+        kernel: Kernel,
+        arguments: Sequence[str] | None = None,
+        angle: str | None = None,
+        limit: float = math.inf,
+    ) -> None:
+        """Compile it; angles beyond the limit are left to the caller."""
+        if arguments is None:
+            arguments = [name for name, axis in kernel.inputs.items() if axis is not None]
+        self.entry = Entry(kernel, tuple(arguments), angle, limit)
+        self.code: Code = compiled(module_text(self.entry), NAME)
+        self.arguments, self.scalars, self.axes = self.entry.arguments, self.entry.scalars, kernel.axes
+        self.call: Callable[[bytes, bytes, bytes, bytes], int] = _CALL(self.code.address)
+        self._pack_data = struct.Struct(f"{HEAD}q{len(self.scalars)}d").pack
+        self._tables = [table.along for table in kernel.tables for _ in table.kernel.outputs]
+        self._given = kernel.given
+
+    def data(self, values: Mapping[str, Any], repair: int = 0, clear: int = 0) -> bytes:
+        """The packed numbers of a call; `repair` and `clear` are addresses of functions (see `HEAD`)."""
+        return self._pack_data(repair, clear, *[values[name] for name in self.scalars])
+
+    def run(self, values: Mapping[str, Any], outs: Sequence[Any]) -> int:
+        """Fill `outs`, arrays over the axes; return how many points are left (see `left_over`)."""
+        given = [values[name] for name in self.arguments]
+        arrays = [*given, *outs]
+        steps = [array.strides[-1] for array in arrays]
+        lengths = [*outs[0].shape]
+        if self._tables:
+            with IMPORTS:
+                import numpy as np
+
+            arrays += [np.empty([lengths[axis] for axis in along]) for along in self._tables]
+        for table in self._given:
+            arrays += [values[f"{table}_x"], values[f"{table}_c"]]
+            lengths.append(values[f"{table}_x"].size)
+        addresses = [array.__array_interface__["data"][0] for array in arrays]
+        return self.call(words(addresses), words(lengths), words(steps), self.data(values))
+
+
+def words(numbers: Sequence[int]) -> bytes:
+    """Whole numbers, packed."""
+    return struct.pack(f"{len(numbers)}q", *numbers)
+
+
+_LOCK = ForkSafeLock()
+_KEPT: Recent[KernelKey, CompiledKernel] = Recent(MOST_KEPT)
+
+
+def is_ready(key: KernelKey) -> bool:
+    """True if the kernel of a key is compiled."""
+    return key in _KEPT
+
+
+def kernel_for(key: KernelKey) -> CompiledKernel:
+    """The kernel of a key, compiled now unless it is kept."""
+    found = _KEPT.get(key)
+    if found is None:
+        found = _KEPT[key] = finished(lambda: _compiled(key))
+    return found
+
+
+def _compiled(key: KernelKey) -> CompiledKernel:
+    """Compile a key; several threads that want the same wait for the first."""
+    with _LOCK:
+        return _KEPT.get(key) or compiled_kernel(key)
+
+
+def compiled_kernel(key: KernelKey, arguments: Sequence[str] | None = None) -> CompiledKernel:
+    """A key's kernel, which nobody else keeps; `arguments` orders the inputs that are arrays."""
+    written_out = key.accuracy != "extended" and not key.far
+    angle = "theta" if written_out and "theta" in dict(key.axis_of) else None
+    return CompiledKernel(kernel_of(key), arguments, angle, limit_of(key.accuracy))
