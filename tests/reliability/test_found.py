@@ -100,12 +100,11 @@ def test_refused_in_words_of_ours(what):
     assert "/desaxe/" in str(caught.traceback[-1].path)
 
 
-@pytest.mark.parametrize("call", [dx.enclose, dx.optimize, dx.synthesize])
+@pytest.mark.parametrize("call", [dx.enclose, dx.optimize])
 def test_time_limits(call):
     wanted = {
         dx.enclose: {"name": "a_C", "theta": dx.between(0, 7), **MACHINE, "ec": dx.between(0, 0.2)},
         dx.optimize: {"maximize": "stroke", "over": {"ec": (0.0, 0.1)}, "AB": 0.125, "BC": 0.35},
-        dx.synthesize: {"stroke": 0.1, "time_ratio": 1.1, "peak_a_C": 900.0, "omega0": 100.0},
     }
     with pytest.raises(TimeoutError, match=rf"{call.__name__}: not done within timeout = 0.001 s"):
         call(**wanted[call], timeout=1e-3)

@@ -43,8 +43,8 @@ METHODS = {
     "function": "desaxe.evaluation.function",
     "explore": "desaxe.scenes.explorer.explore",
 }
-NOT_FILLED = {"synthesize": ("AB", "BC", "omega0"), "explore": ("source",)}
-WISHES = ("BC", "AB", "max_pressure_angle", "peak_a_C")  # one of them beside stroke and time ratio
+NOT_FILLED = {"synthesize": ("AB", "BC"), "explore": ("source",)}
+WISHES = ("BC", "AB", "max_pressure_angle")  # one of them beside stroke and time ratio
 EITHER = {"omega": "omega0", "omega0": "omega"}  # a given state takes the place of the law, and back
 INTRODUCTION = "`desaxe.{name}` with the inputs of this machine; those given here replace them."
 UNITS = """
@@ -188,7 +188,7 @@ def _starts(name: str, value: Any) -> bool:
 
 
 def _wishes(machine: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
-    """Requirements of a synthesis that the machine meets itself: stroke, time ratio, rod, or the speed."""
+    """Requirements of a synthesis that the machine meets itself: stroke, time ratio, rod."""
     found = {}
     if not all(key in given for key in ("stroke", "time_ratio")):
         lengths = {key: machine[key] for key in FILLED if key in machine}
@@ -196,8 +196,6 @@ def _wishes(machine: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, A
         found = {key: own[key] for key in ("stroke", "time_ratio") if key in own and key not in given}
     if not any(given.get(key) is not None for key in WISHES) and "BC" in machine:
         found["BC"] = machine["BC"]
-    if given.get("peak_a_C") is not None and "omega0" in machine and "omega0" not in given:
-        found["omega0"] = machine["omega0"]
     return found
 
 

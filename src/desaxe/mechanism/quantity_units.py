@@ -39,7 +39,6 @@ OTHERS = {
     "radius": "m",
     "mass": "kg",
     "product": "kg*m",
-    "peak_a_C": "m/s^2",
 }  # fmt: skip
 
 

@@ -1,6 +1,5 @@
-"""Designs with a required stroke, time ratio and peak.
+"""Designs with a required stroke and time ratio.
 
 synthesize  the public call
 family      the designs of one stroke and time ratio
-peak        the members of a family with a required largest acceleration
 """

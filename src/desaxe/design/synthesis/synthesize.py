@@ -24,10 +24,8 @@ from ...mechanism.names import LENGTHS
 from ...mechanism.quantity_units import units_of
 from ...mechanism.read import read
 from ...mechanism.spoken import spoken
-from ...runtime.request import as_number, with_known_inputs
+from ...runtime.request import with_known_inputs
 from ...support.answer import Answer
-from ...support.deadline import Deadline
-from ...support.forks import IMPORTS
 from ...support.roots import root
 from ...support.shown import shown
 from .family import Family, Fitting
@@ -38,10 +36,9 @@ WANTED = {
         Input("stroke", "m", "distance between the dead centres"),
         Input("time_ratio", "1", "longer over shorter stroke"),
         Input("max_pressure_angle", "rad", "largest angle between rod and slider's axis"),
-        Input("peak_a_C", "m/s^2", "largest magnitude of the slider's acceleration"),
     )
 }
-THIRDS = ("BC", "AB", "max_pressure_angle", "peak_a_C")
+THIRDS = ("BC", "AB", "max_pressure_angle")
 
 
 @with_known_inputs
@@ -52,21 +49,15 @@ def synthesize(
     BC: Any = None,
     AB: Any = None,
     max_pressure_angle: Any = None,
-    peak_a_C: Any = None,
-    omega0: Any = None,
     slow_stroke: int = 1,
-    timeout: float | None = 120.0,
 ) -> dict[str, Any]:
     """Every design with this stroke, time ratio and one further requirement; or why there is none.
 
     stroke       distance between the dead centres [m]
     time_ratio   the longer over the shorter stroke, from 1 to below 3
-    one of       BC, AB: lengths [m]; max_pressure_angle [rad], of the rod; peak_a_C: the largest magnitude of
-                 the slider's acceleration [m/s^2] at the constant speed omega0 [rad/s] (of designs whose
-                 margin is more than 1e-9 of the rod)
+    one of       BC, AB: lengths [m]; max_pressure_angle [rad], of the rod
     slow_stroke  +1: the slider is slow on its way outward (branch 1, crank turning forwards), ec > 0;
                  -1: inward, ec < 0: the mirror image
-    timeout      seconds after which it ends with a TimeoutError; None for no limit
 
     Numbers are in SI units; texts with units are understood. Gives a dict:
 
@@ -76,8 +67,9 @@ def synthesize(
     status     0 one or more; 1 none; 2 the further requirement leaves the design undetermined
     message    how many, or why none
 
-    Closed forms in plain Python (see this module's docstring); the peak acceleration is refined. Raises
-    ValueError for an impossible requirement, TypeError unless exactly one third requirement is given.
+    Closed forms in plain Python (see this module's docstring); for a peak acceleration `optimize` keeps the
+    stroke and the time ratio. Raises ValueError for an impossible requirement, TypeError unless exactly one
+    third requirement is given.
 
     See docs/choose.md: which call for which question.
 
@@ -86,14 +78,13 @@ def synthesize(
         >>> [round(1e3 * found["solutions"][0][name], 2) for name in ("ec", "AB", "BC")]
         [19.9, 40.05, 64.0]
     """
-    thirds = {"BC": BC, "AB": AB, "max_pressure_angle": max_pressure_angle, "peak_a_C": peak_a_C}
+    thirds = {"BC": BC, "AB": AB, "max_pressure_angle": max_pressure_angle}
     given = [name for name, value in thirds.items() if value is not None]
     if len(given) != 1:
         got = " and ".join(given) or "none"
         raise TypeError(f"synthesize: expected just one of {', '.join(THIRDS)}, got {got}")
     if not isinstance(slow_stroke, (int, float)) or slow_stroke not in (1, -1):
         raise ValueError(f"slow_stroke = {shown(slow_stroke)}: it is +1 (outward) or -1 (inward)")
-    deadline = Deadline("synthesize", timeout)
     (third,) = given
     H, ratio, value = (
         _wish(n, v) for n, v in (("stroke", stroke), ("time_ratio", time_ratio), (third, thirds[third]))
@@ -104,15 +95,7 @@ def synthesize(
         why = f"time_ratio = {ratio:g}: below 3 wherever the crank turns fully"
         return _result(third, value, slow_stroke, Fitting([], *2 * (float("nan"),), why))
     family = Family(H, pi * (ratio - 1.0) / (ratio + 1.0))
-    if third == "peak_a_C":
-        with IMPORTS:
-            from .peak import of_peak
-
-        speed = as_number("omega0", omega0, ("stroke", "time_ratio", third, "omega0"), ("synthesize",))
-        answer = of_peak(family, value, float(speed or 0.0), deadline)
-    else:
-        answer = _FORMS[third](family, value)
-    return _result(third, value, slow_stroke, answer)
+    return _result(third, value, slow_stroke, _FORMS[third](family, value))
 
 
 def _wish(name: str, value: Any) -> float:
