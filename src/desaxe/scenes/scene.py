@@ -119,7 +119,7 @@ def scene(source: str | PathLike[str] | Mapping[str, Any]) -> Scene:
     The file is data: nothing in it is ever executed. Quantities that it defines (`[quantities.NAME]`) are
     known to every call from then on, as those of `define` are. Raises SceneError (a ValueError) that
     names the key, its value and what is allowed; OSError where the file cannot be read. Needs the extra
-    `scene`, and `units` where a value carries a unit.
+    `scene`, and `units` for a unit that only pint knows.
 
         dx.scene("examples/compactor.toml").run()
 

@@ -19,7 +19,6 @@ from .table import UNITS, ScaledUnit, did_you_mean_unit
 from .text import plain_number, split_quantity, terms_of
 
 LONGEST_UNIT = 100  # characters
-SHORT = 40  # characters of a text that is worth remembering
 _LONGEST = 1000  # characters of a number: all digits of any double
 _BEYOND = "it must be a number that a double holds, from 4.9e-324 to 1.8e308"
 _RATE = 'a rate "per time" does not say of what: write turns or an angle, such as "120 turn/min"'
@@ -139,21 +138,13 @@ def rounded(name: str, text: str, value: Fraction) -> float:
 def in_unit(name: str, value: Any, si: str) -> Any:
     """The magnitude of a text or pint quantity in an SI unit; errors name both."""
     if isinstance(value, str):
-        return (_of_short_text if len(value) <= SHORT else _of_text)(name, value, si)
-    factor = _factor_of_pint(name, value, si)
-    magnitude = value.magnitude
+        plain = plain_number(value)
+        return rounded(name, value, exact(name, value, si)) if plain is None else plain
+    factor, magnitude = _factor_of_pint(name, value, si), value.magnitude
     if isinstance(magnitude, (int, float, Decimal, Fraction)) and isfinite(magnitude):
         written = repr(float(magnitude)) if isinstance(magnitude, float) else magnitude
         return rounded(name, str(value), Fraction(written) * factor)  # as the same text
     return magnitude * float(factor) if hasattr(magnitude, "dask") else by_digits(magnitude, factor)
-
-
-def _of_text(name: str, text: str, si: str) -> float:
-    plain = plain_number(text)
-    return rounded(name, text, exact(name, text, si)) if plain is None else plain
-
-
-_of_short_text = lru_cache(maxsize=1024)(_of_text)
 
 
 def _factor_of_pint(name: str, value: Any, si: str) -> Fraction:

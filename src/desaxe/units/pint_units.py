@@ -4,7 +4,7 @@ from fractions import Fraction
 from functools import cache
 from typing import Any
 
-from ..support.extras import MissingExtraError, explained
+from ..support.extras import explained
 from ..support.interrupts import import_whole
 from .dimensions import NONE, Unit
 from .table import ScaledUnit
@@ -14,20 +14,10 @@ _BASES["gram"] = _BASES["kilogram"]
 
 
 @cache
-def registry() -> Any:
-    """The registry of units of the quantities that answers are made of."""
+def registry(number: type = float) -> Any:
+    """The registry of units of the quantities that answers are made of; `number`: the type of its factors."""
     with explained("a quantity with a unit"):
-        return _registry(float)
-
-
-@cache
-def _exact_registry() -> Any:
-    return _registry(Fraction)
-
-
-def _registry(number: type) -> Any:
-    pint = import_whole("pint")
-    units: Any = pint.UnitRegistry(non_int_type=number)
+        units: Any = import_whole("pint").UnitRegistry(non_int_type=number)
     units.define("@alias revolution = rev")
     units.define("@alias revolutions_per_minute = RPM")
     return units
@@ -35,12 +25,11 @@ def _registry(number: type) -> Any:
 
 def unit_of_pint(name: str) -> ScaledUnit:
     """The unit that pint knows by a name; ValueError where it knows none, or one of no mechanism."""
+    with explained(f"the unit {name!r}"):
+        import_whole("pint")
     try:
-        with explained(f"the unit {name!r}"):
-            size = _exact_registry().Quantity(Fraction(1), name).to_root_units()
-            magnitude = Fraction(size.magnitude)
-    except MissingExtraError:
-        raise
+        size = registry(Fraction).Quantity(Fraction(1), name).to_root_units()
+        magnitude = Fraction(size.magnitude)
     except Exception:  # of pint: an unknown name, a logarithm
         raise ValueError("unknown unit") from None
     return _scaled(magnitude, size.units)

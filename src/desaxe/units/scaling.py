@@ -38,11 +38,7 @@ def scaled(value: Any, factor: Fraction) -> Any:
     T. J. Dekker, Numer. Math. 18 (1971); where that overflows it is that of doubles.
     """
     if isinstance(value, (int, float)):
-        above, below = factor.as_integer_ratio()
-        if not isfinite(value):
-            return float(value)
-        number, under = value.as_integer_ratio()
-        return number * above / (under * below)
+        return float(Fraction(value) * factor) if isfinite(value) else float(value)
     with IMPORTS:
         import numpy as np
 

@@ -3,21 +3,8 @@
 from fractions import Fraction
 from typing import NamedTuple
 
-from .dimensions import (
-    ACCELERATION,
-    ANGLE,
-    ANGULAR_SPEED,
-    ENERGY,
-    FORCE,
-    LENGTH,
-    MASS,
-    NONE,
-    PER_TIME,
-    POWER,
-    PRESSURE,
-    TIME,
-    Unit,
-)
+from . import dimensions as of
+from .dimensions import Unit
 
 PI = Fraction("3.14159265358979323846264338327950288419716939937510")
 GRAVITY, POUND, INCH = Fraction("9.80665"), Fraction("0.45359237"), Fraction("0.0254")
@@ -46,32 +33,32 @@ def _prefixed(symbol: str, prefixes: str, si: Unit, size: Fraction | int = 1) ->
 
 
 UNITS = {
-    **_prefixed("m", "kdcmuµμn", LENGTH),
-    **_names("inch inches in", LENGTH, INCH),
-    **_names("foot feet ft", LENGTH, _FOOT),
-    **_prefixed("s", "muµμn", TIME),
-    **_names("minute minutes min", TIME, 60),
-    **_names("hour hours h hr", TIME, 3600),
-    **_prefixed("rad", "muµμ", ANGLE),
-    **_names("degree degrees deg °", ANGLE, PI / 180),
-    **_names("turn revolution rev", ANGLE, 2 * PI),
-    **_names("rpm RPM revolutions_per_minute", ANGULAR_SPEED, PI / 30),
-    **_prefixed("Hz", "kM", PER_TIME),
-    **_prefixed("g", "kmuµμ", MASS, Fraction(1, 1000)),
-    **_names("t", MASS, 1000),
-    **_names("pound pounds lb", MASS, POUND),
-    **_names("ounce ounces oz", MASS, POUND / 16),
-    **_prefixed("N", "GMkhdcmuµμ", FORCE),
-    **_names("kgf", FORCE, GRAVITY),
-    **_names("lbf", FORCE, _POUND_FORCE),
-    **_prefixed("J", "GMkm", ENERGY),
-    **_prefixed("W", "GMkm", POWER),
-    **_names("horsepower hp", POWER, 550 * _FOOT * _POUND_FORCE),
-    **_prefixed("Pa", "GMkhm", PRESSURE),
-    **_prefixed("bar", "km", PRESSURE, 10**5),
-    **_names("psi", PRESSURE, _POUND_FORCE / INCH**2),
-    **_names("standard_gravity", ACCELERATION, GRAVITY),
-    **_names("percent %", NONE, Fraction(1, 100)),
+    **_prefixed("m", "kdcmuµμn", of.LENGTH),
+    **_names("inch inches in", of.LENGTH, INCH),
+    **_names("foot feet ft", of.LENGTH, _FOOT),
+    **_prefixed("s", "muµμn", of.TIME),
+    **_names("minute minutes min", of.TIME, 60),
+    **_names("hour hours h hr", of.TIME, 3600),
+    **_prefixed("rad", "muµμ", of.ANGLE),
+    **_names("degree degrees deg °", of.ANGLE, PI / 180),
+    **_names("turn revolution rev", of.ANGLE, 2 * PI),
+    **_names("rpm RPM revolutions_per_minute", of.ANGULAR_SPEED, PI / 30),
+    **_prefixed("Hz", "kM", of.PER_TIME),
+    **_prefixed("g", "kmuµμ", of.MASS, Fraction(1, 1000)),
+    **_names("t", of.MASS, 1000),
+    **_names("pound pounds lb", of.MASS, POUND),
+    **_names("ounce ounces oz", of.MASS, POUND / 16),
+    **_prefixed("N", "GMkhdcmuµμ", of.FORCE),
+    **_names("kgf", of.FORCE, GRAVITY),
+    **_names("lbf", of.FORCE, _POUND_FORCE),
+    **_prefixed("J", "GMkm", of.ENERGY),
+    **_prefixed("W", "GMkm", of.POWER),
+    **_names("horsepower hp", of.POWER, 550 * _FOOT * _POUND_FORCE),
+    **_prefixed("Pa", "GMkhm", of.PRESSURE),
+    **_prefixed("bar", "km", of.PRESSURE, 10**5),
+    **_names("psi", of.PRESSURE, _POUND_FORCE / INCH**2),
+    **_names("standard_gravity", of.ACCELERATION, GRAVITY),
+    **_names("percent %", of.NONE, Fraction(1, 100)),
 }
 # Units whose letters people write in the wrong case, or without the blank, by SI unit.
 COMMON = {
