@@ -29,6 +29,9 @@ REFUSED = {
     "max(*V_C)": "unexpected", "max(V_C, )": "unexpected", "(V_C, V_C)": "unexpected ','",
     "2(V_C)": "unexpected",
     "not V_C": "unexpected 'V_C'", "lambda": "unknown name 'lambda'", "V_C Y": "unexpected 'Y'",
+    "sqrt(Y, Y)": "takes 1 argument, got 2", "hypot(Y, Y, Y)": "takes 2 arguments, got 3",
+    "min(Y)": "takes 2 to 8 arguments, got 1", "where(Y > 0, Y, Y, Y)": "takes 3 arguments, got 4",
+    "2 * Y" + " + Y" * 199: "more than 400", "-" * 397 + "V_C * a_C" + " " * 4_000: "4406 characters",
 }  # fmt: skip
 
 
@@ -52,6 +55,10 @@ def test_refused(text):
         ("V_C + (a_C + V_C) * AB", "(a_C + V_C)"),
         ("AB\n + BC.x", "."),
         ("2 * 3 $ 4", "$"),
+        ("2 * (AB", "B"),
+        ("min(Y, (V_C ) ) + 1", "min(Y, (V_C ) )"),
+        ("AB + 0 * (0 < AB)", "(0 < AB)"),
+        ("sin( ( AB ) )", "sin( ( AB ) )"),
     ],
 )
 def test_the_mark_is_below_the_place(text, marked):

@@ -82,7 +82,7 @@ def lines_needed(names: tuple[str, ...], own: tuple[Definition, ...]) -> Needed:
         for leaf in leaves((base,), known):
             wanted[leaf] = None
             for parameter in parameters:
-                slope = _slope_name(leaf, parameter)
+                slope = sensitivity(leaf, parameter)
                 if slope in derived or slope in _CENTRE_SLOPES:
                     wanted[slope] = None
                 elif leaf in derived and depends(leaf, parameter):
@@ -95,10 +95,6 @@ def lines_needed(names: tuple[str, ...], own: tuple[Definition, ...]) -> Needed:
 
 
 _CENTRE_SLOPES = {joined(centre, (length,)) for centre, length in LENGTH_OF.items()}
-
-
-def _slope_name(leaf: str, parameter: str) -> str:
-    return sensitivity(leaf, parameter)
 
 
 def with_own_lines(base: Program, names: tuple[str, ...], own: tuple[Definition, ...]) -> Program:
@@ -166,7 +162,7 @@ class _Writer:
                 for line in keep_outputs(self.base, slow).lines:
                     chain.through(line)
             for leaf in self.needed.names:
-                slope = _slope_name(leaf, parameter)
+                slope = sensitivity(leaf, parameter)
                 if leaf != parameter and slope in self.known and leaf not in slow:
                     chain.slopes[leaf] = slope
             for line in self.values:
@@ -182,7 +178,7 @@ class _Writer:
             chain = _Chain(other, f"{PREFIX}{one}_{other}_")
             chain.slopes |= self._first(other).slopes
             for leaf in self.needed.names:
-                slope, both = _slope_name(leaf, one), sensitivity(leaf, one, other)
+                slope, both = sensitivity(leaf, one), sensitivity(leaf, one, other)
                 if both in self.known:
                     chain.slopes[slope] = both
                 else:
@@ -198,13 +194,8 @@ class _Writer:
         self.known |= {line.name for line in lines}
 
 
-BOUNDED = (
-    "theta",
-    "phi",
-    "delta",
-    "pressure_angle",
-    "transmission_angle",
-)  # angles that double_digits reduces
+# Angles that double_digits reduces.
+BOUNDED = ("theta", "phi", "delta", "pressure_angle", "transmission_angle")
 
 
 @lru_cache(maxsize=256)
