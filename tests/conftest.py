@@ -22,7 +22,7 @@ import pytest
 
 from desaxe.mechanism import own
 from desaxe.runtime import cache as _cache
-from desaxe.runtime import kernels, tiers
+from desaxe.runtime import executor, tiers
 from desaxe.support.recent import Recent
 from tests.effort import VARIABLE as THOROUGH
 from tests.ways import take_way
@@ -168,7 +168,7 @@ def cold(monkeypatch, tmp_path_factory):
     """A process that has no kernel, in memory or on disk, whatever other tests compiled."""
     empty = _cache.Folder(tmp_path_factory.mktemp("cold"), lasting=True)
     monkeypatch.setattr(_cache, "folder", lambda: empty)
-    monkeypatch.setattr(kernels.STORE, "_loaded", Recent(kernels.MOST_LOADED))
+    monkeypatch.setattr(executor, "_KEPT", Recent(executor.MOST_KEPT))
     monkeypatch.delenv(tiers.VARIABLE, raising=False)
 
 

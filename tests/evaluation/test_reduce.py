@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.compiler.languages.numba.reductions import LONGEST
 from desaxe.evaluation import plan
 from desaxe.evaluation.points import Points
 from desaxe.evaluation.reductions import kinds
-from desaxe.runtime import kernels as _kernels
+from desaxe.evaluation.reductions.reduced import BLOCK
+from desaxe.runtime import executor
 
 MACHINE = {"AB": 0.125, "omega0": 157.08}
 TURN = np.linspace(0.0, 2.0 * np.pi, 721)
@@ -89,8 +89,8 @@ def test_bad_elements_are_skipped():
 
 
 @pytest.mark.thorough
-def test_rows_longer_than_the_scratch():
-    theta = np.linspace(0.0, 7.0, 3 * LONGEST + 5)
+def test_rows_longer_than_a_block():
+    theta = np.linspace(0.0, 7.0, BLOCK + 5)
     compare(["a_C"], "theta", theta=theta, ec=[0.0, 0.2, 0.23], BC=[0.35, 0.4], **MACHINE)
 
 
@@ -121,8 +121,17 @@ def test_threads_change_nothing():
 
 def test_the_grid_is_never_stored(monkeypatch):
     monkeypatch.setenv("DESAXE_TIER", "compiled")
-    monkeypatch.setattr(Points, "compute", lambda *_: pytest.fail("the whole grid was computed"))
-    found = dx.grid(NAMES, reduce={"theta": KINDS}, theta=TURN, **DESIGNS)
+    compute, sizes = Points.compute, []
+
+    def computed(*args):
+        arrays = compute(*args)
+        sizes.append(max(array.size for array in arrays.values()))
+        return arrays
+
+    monkeypatch.setattr(Points, "compute", computed)
+    found = dx.grid(NAMES, reduce={"theta": KINDS}, theta=TURN, **DESIGNS | {"ec": np.linspace(0.0, 0.6, 97)})
+    assert sum(sizes) == TURN.size * 97 * 2
+    assert max(sizes) <= BLOCK
     told = [*KINDS, *(f"{kind}_theta" for kind in KINDS[:3]), "skipped"]
     assert set(found.data_vars) == {f"{name}_{what}" for name in NAMES for what in told}
 
@@ -139,7 +148,7 @@ def test_labels():
 
 
 def test_small_grids_compile_nothing(cold, monkeypatch):
-    monkeypatch.setattr(_kernels.STORE, "load", None)
+    monkeypatch.setattr(executor, "_compiled", None)
     theta = np.linspace(0.0, 3.0, 7)
     dx.grid("phi", theta=theta, ec=[0.01, 0.02], AB=0.11, BC=0.37)
     dx.grid("phi", reduce={"theta": "max"}, theta=theta, ec=[0.01, 0.02], AB=0.11, BC=0.37)

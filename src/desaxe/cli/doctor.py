@@ -79,7 +79,6 @@ def _python() -> str:
 def _cache() -> list[str]:
     """The cache folder: its path, its persistence, its contents."""
     from ..runtime.cache import VARIABLE, entries, folder, limit
-    from ..runtime.kernels import MOST_LOADED, STORE
 
     found = folder()
     kept = entries(found.path)
@@ -89,7 +88,6 @@ def _cache() -> list[str]:
     return [
         _row("folder", f"{found.path} ({state})"),
         _row("holds", f"{count} kernels, {size / 1e6:.1f} MB of at most {limit() / 1e6:.0f} MB"),
-        _row("in memory", f"{len(STORE)} kernels of this process, at most {MOST_LOADED}"),
     ]
 
 

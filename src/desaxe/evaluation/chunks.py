@@ -56,6 +56,11 @@ def uniform(lengths: Mapping[str, Sequence[int]]) -> dict[str, int]:
     return {name: max(own[0], 1) if own else 1 for name, own in lengths.items()}
 
 
+def longest(lengths: Mapping[str, Sequence[int]]) -> dict[str, int]:
+    """The longest chunk of each dimension."""
+    return {name: max(1, *own) for name, own in lengths.items()}
+
+
 def blocks_of(sizes: Mapping[str, int], chunk: Mapping[str, int]) -> Iterator[tuple[int, ...]]:
     """The indices of all chunks, in order."""
     return product(*(range(-(-size // chunk[name])) for name, size in sizes.items()))

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..support.extras import needed
-from .chunks import chunk_lengths
+from .chunks import chunk_lengths, longest
 from .dask_blocks import outputs_of_blocks
-from .plan import Plan, Step, computed, longest
+from .plan import Plan, Step, computed
 
 Array = NDArray[Any]
 AUTO = 2**21  # points of a chunk: 16 MiB of doubles

@@ -24,7 +24,7 @@ from ..mechanism.own import Definition
 from ..runtime.compiled_only import compiled_only
 from ..support.extras import needed
 from .axes import Outer
-from .chunks import Slices, blocks_of, chunk_lengths, pieces, slices_of
+from .chunks import Slices, blocks_of, chunk_lengths, longest, pieces, slices_of
 from .labels import Output, labelled, provenance, with_loads
 from .points import Points, points_of
 from .reductions.argument import Reductions
@@ -280,8 +280,3 @@ def _of_pieces(step: Step, values: Mapping[str, Array], threads: int | None) -> 
     parts = [*pieces(values, step.held() if step.combines() else ())]
     found = [step.compute(part, threads) for part in parts]
     return found[0] if len(found) == 1 else step.combine(parts, found)
-
-
-def longest(lengths: Mapping[str, Sequence[int]]) -> dict[str, int]:
-    """The longest chunk of each dimension."""
-    return {name: max(1, *own) for name, own in lengths.items()}

@@ -1,15 +1,10 @@
-"""From a request to the loop nest that answers it: keys and their kernels.
-
-Kernels that reduce an axis are compiled by numba and stored (see `native.modules`).
-"""
+"""From a request to the loop nest that answers it: keys and their kernels."""
 
 from collections.abc import Mapping, Sequence
 from math import inf, prod
 from typing import Any, NamedTuple
 
 from ..compiler.kernel import Kernel
-from ..compiler.languages.numba.module import TO_COMPILE, arrays_of, emit_numba
-from ..compiler.languages.numba.reductions import emit_reduced
 from ..compiler.lowering import Limits, guarded_for_loops, guarded_pairs, nest, nest_of_two_forms
 from ..compiler.passes.trigonometry import Trigonometry
 from ..compiler.program import Line, Program
@@ -19,7 +14,6 @@ from ..mechanism.names import LENGTHS, LOADS
 from ..mechanism.program import Variant
 from ..support.forks import IMPORTS
 from .accuracy import check_angle
-from .native.modules import Native, Store
 from .request import Request
 from .specialise import plain_form, specialise
 
@@ -41,18 +35,6 @@ class KernelKey(NamedTuple):
     axes: int
     accuracy: str = "standard"
     far: bool = False  # angles are beyond what the written-out sine and cosine reduce exactly
-    reduce: tuple[str, ...] = ()  # what is taken of the innermost axis: max, mean, ...
-
-
-class CompiledKernel(NamedTuple):
-    """A kernel and the order of its inputs; an input that is a scalar has no axis."""
-
-    function: Native
-    axis_of: tuple[tuple[str, int | None], ...]
-
-    def run(self, values: Mapping[str, Any], outs: Sequence[Any]) -> int:
-        """Fill `outs`."""
-        return self.function(*(values[name] for name, _ in self.axis_of), *outs)
 
 
 def key_of(
@@ -99,9 +81,6 @@ def has_large_angles(angles: Any) -> bool:
     return bool(np.any((sizes > limit) & (sizes < np.inf)))
 
 
-MOST_LOADED = 256  # kernels in memory
-
-
 def _is_seen(program: Program, angle: str) -> bool:
     """True if an invalid value may reach other lines than sine and cosine, which turn it into NaN."""
     types = {line.name: line.type for line in program.lines}
@@ -111,7 +90,7 @@ def _is_seen(program: Program, angle: str) -> bool:
 
 def has_near_limit(key: KernelKey) -> bool:
     """True if the kernel counts undecided points (see `left_over`)."""
-    return key.accuracy == "standard" and not key.reduce and plain_of(key) is not None
+    return key.accuracy == "standard" and plain_of(key) is not None
 
 
 def tells_unsafe(key: KernelKey) -> bool:
@@ -269,25 +248,3 @@ def seen_inputs(program: Program, varying: Sequence[str]) -> list[str]:
 def _trigonometry(key: KernelKey) -> Trigonometry | None:
     """The coefficients of a kernel's sine and cosine; None if angles exceed their range."""
     return None if key.far else constants()
-
-
-def source_of(key: KernelKey) -> str:
-    """The source text of a kernel."""
-    kernel = kernel_of(key)
-    fixed = ", ".join(f"{name} = {value:g}" for name, value in key.fixed)
-    motion = "a given state" if key.form.state else "paper A's law"
-    docstring = f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}."
-    if key.reduce:
-        return emit_reduced(kernel, key.reduce, docstring)
-    return emit_numba(kernel, docstring, TO_COMPILE)
-
-
-def _compiled(key: KernelKey, function: Native) -> CompiledKernel:
-    axes = dict(key.axis_of)
-    inputs = specialise(key.names, key.form, key.fixed).inputs
-    order = tuple((name, axes.get(name)) for name in (*inputs, *arrays_of(tables_of(key))))
-    return CompiledKernel(function, order)
-
-
-STORE = Store("kernel", source_of, _compiled, MOST_LOADED)
-reduced_for = STORE.of

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ..support.forks import IMPORTS, in_child
 from ..support.signals import put_off
 from .executor import kernel_for
-from .kernels import KernelKey, reduced_for
+from .kernels import KernelKey
 
 if TYPE_CHECKING:
     from concurrent.futures import Future, ThreadPoolExecutor
@@ -152,18 +152,3 @@ def run_together(works: Sequence[Callable[[], None]], stopped: Event) -> None:
             stopped.set()
             wait(begun)
             raise
-
-
-def fill_reduced(
-    key: KernelKey, values: Mapping[str, Any], length: int, outs: Sequence[Any], threads: int | None
-) -> None:
-    """Fill the outputs of `outputs_of` by the kernel of a key, whose innermost axis has this length."""
-    kernel = reduced_for(key)
-    outer = {name for name, axis in kernel.axis_of if axis == 0}
-    names = [name for name, _ in kernel.axis_of]
-
-    def block(start: int, stop: int) -> None:
-        part = [values[n][start:stop] if n in outer else values[n] for n in names]
-        kernel.function(*part, length, *(out[start:stop] for out in outs))
-
-    in_blocks(block, outs[0].shape[0], outs[0].size * length, threads)

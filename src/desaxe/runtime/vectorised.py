@@ -39,7 +39,7 @@ def fill_by_arrays(
     key: KernelKey, scalars: Mapping[str, float], columns: Mapping[str, Array], outs: Sequence[Array]
 ) -> None:
     """Fill flat outputs from scalars and flat columns, by NumPy."""
-    forms = _forms(key._replace(axis_of=tuple(sorted((n, 0) for n in columns)), axes=1, far=False, reduce=()))
+    forms = _forms(key._replace(axis_of=tuple(sorted((n, 0) for n in columns)), axes=1, far=False))
     for start in range(0, outs[0].size, BLOCK):
         part = slice(start, start + BLOCK)
         values = {**scalars, **{name: column[part] for name, column in columns.items()}}

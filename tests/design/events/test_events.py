@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, assume, example, given, settings
 from hypothesis import strategies as st
 
 import desaxe as dx
-from desaxe.runtime import kernels
+from desaxe.runtime import executor
 
 DESIGNS = [
     (0.02, 0.04, 0.064), (-0.02, 0.04, 0.064), (0.0, 0.125, 0.35), (1e-9, 0.125, 0.35),
@@ -315,7 +315,7 @@ def test_the_first_arrays_wait_for_no_compiler(cold, monkeypatch):
     def refuse(key):
         raise AssertionError(f"{key.names} are compiled")
 
-    monkeypatch.setattr(kernels.STORE, "load", refuse)
+    monkeypatch.setattr(executor, "_compiled", refuse)
     ec = np.linspace(-0.0239, 0.0239, 701)
     lengths = {"ec": ec, "AB": 0.04, "BC": 0.064}
     for omega0 in (2.0, -3.0, 2.0):

@@ -7,6 +7,7 @@ pieces of an axis combines to that of the whole in the same way.
 
 from collections.abc import Mapping, Sequence
 from math import prod
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,21 +20,38 @@ PIECE = "piece"  # the dimension of pieces that are combined
 
 
 class Field(NamedTuple):
-    """Values over dimensions, how many points each stands for, and along which values its extreme is."""
+    """Values over dimensions, how many points each stands for, and along which values its extreme is.
+
+    Without counts each stands for one point.
+    """
 
     dims: tuple[str, ...]
     values: Array
-    counts: Array
+    counts: Array | None
     places: Mapping[str, Array]
 
-    def counted_anew(self) -> "Field":
-        """Each value that there is as one point."""
-        return self._replace(counts=(self.values == self.values).astype(np.int64))
+    def fill(self, region: tuple[slice, ...], part: "Field") -> None:
+        """Fill a region with the values, counts and positions of another field."""
+        self.values[region] = part.values
+        if self.counts is not None:
+            self.counts[region] = part.points(())
+        for axis, places in part.places.items():
+            self.places[axis][region] = places
+
+    def points(self, axes: Sequence[str]) -> Array:
+        """The numbers of points along some axes."""
+        along = tuple(number for number, axis in enumerate(self.dims) if axis in axes)
+        if self.counts is not None:
+            return np.asarray(self.counts.sum(axis=along))
+        sizes = self.values.shape
+        left = [size for number, size in enumerate(sizes) if number not in along]
+        return np.full(left, prod(sizes[number] for number in along))
 
 
-def field_of(dims: Sequence[str], values: Array) -> Field:
-    """Values of which none is reduced."""
-    return Field(tuple(dims), values, np.empty(0), {}).counted_anew()
+def field_of(dims: Sequence[str], values: Array, places: Mapping[str, Array] = MappingProxyType({})) -> Field:
+    """Values of which each that there is stands for one point."""
+    good = values == values
+    return Field(tuple(dims), values, None if good.all() else good.astype(np.int64), places)
 
 
 def folded(field: Field, axes: Sequence[str], kind: str, coordinates: Mapping[str, Array]) -> Field:
@@ -48,12 +66,12 @@ def folded(field: Field, axes: Sequence[str], kind: str, coordinates: Mapping[st
         moved = np.moveaxis(array, [field.dims.index(name) for name in axes], list(ends))
         return moved.reshape(*moved.shape[: len(rest)], prod(lengths))
 
-    values, counts = rows(field.values), rows(field.counts)
-    total = counts.sum(axis=-1)
+    values, total = rows(field.values), field.points(axes)
+    counts = None if field.counts is None else rows(field.counts)
     taken_of = kind_called(kind)
     if not isinstance(taken_of, Extreme):
         return Field(rest, np.where(total > 0, average(taken_of, values, counts), np.nan), total, {})
-    at = place(taken_of, values, counts > 0)
+    at = place(taken_of, values, None if counts is None else counts > 0)
     here = np.maximum(at, 0)[..., None]
 
     def taken(array: Array) -> Array:
@@ -75,7 +93,7 @@ def combined(parts: Sequence[Field], kind: str) -> Field:
     first = parts[0]
     if len(parts) == 1:
         return first
-    values, counts = np.stack([p.values for p in parts], -1), np.stack([p.counts for p in parts], -1)
+    values, counts = np.stack([p.values for p in parts], -1), np.stack([p.points(()) for p in parts], -1)
     places = {name: np.stack([p.places[name] for p in parts], -1) for name in first.places}
     whole = Field((*first.dims, PIECE), values, counts, places)
     found = folded(whole, (PIECE,), kind, {PIECE: np.arange(float(len(parts)))})

@@ -1,7 +1,7 @@
 """The kinds of reductions: what each is called, and what it is of rows of numbers in memory.
 
-A kind is a row of `OTHERS` (a number made of all) or of `EXTREMES` (one of them, which has a place). A kernel
-computes those of `compiler/languages/numba/reductions` on the way; all others are taken of arrays.
+A kind is a row of `OTHERS` (a number made of all) or of `EXTREMES` (one of them, which has a place). Exported
+modules know those of `compiler/languages/numba/reductions`.
 """
 
 import re
@@ -31,32 +31,47 @@ class Extreme(NamedTuple):
 
 
 class Average(NamedTuple):
-    """A number made of rows, and of the numbers of points that each of their values stands for.
+    """A number made of rows, and of the numbers of points that each of their values stands for: one without.
 
     combines   whether that of a row follows from those of its parts
     """
 
     method: str
-    of_rows: Callable[[Array, Array], Array]
+    of_rows: Callable[[Array, Array | None], Array]
     combines: bool = False
 
 
-def _mean(rows: Array, counts: Array) -> Array:
-    return np.asarray(np.where(counts > 0, rows * counts, 0.0).sum(axis=-1) / counts.sum(axis=-1))
+def compensated_sum(rows: Array) -> Array:
+    """The sum of each row by halves, with what rounding takes of it; infinite where a value is."""
+    error = np.zeros(rows.shape[:-1])
+    while rows.shape[-1] > 1:
+        half = rows.shape[-1] // 2
+        first, second = rows[..., :half], rows[..., half : 2 * half]
+        total = first + second
+        of_second = total - first
+        error += ((first - (total - of_second)) + (second - of_second)).sum(axis=-1)
+        rows = np.append(total, rows[..., -1:], axis=-1) if rows.shape[-1] % 2 else total
+    return np.where(np.isfinite(error), rows[..., 0] + error, rows[..., 0])
 
 
-def _scaled_root(rows: Array, counts: Array) -> Array:
+def _mean(rows: Array, counts: Array | None) -> Array:
+    if counts is None:
+        return np.asarray(compensated_sum(rows) / rows.shape[-1])
+    return np.asarray(compensated_sum(np.where(counts > 0, rows * counts, 0.0)) / counts.sum(axis=-1))
+
+
+def _scaled_root(rows: Array, counts: Array | None) -> Array:
     """The root of the mean square, of any scale: a power of two brings the squares into range."""
     largest = np.nanmax(np.where(np.isinf(rows), np.nan, np.abs(rows)), axis=-1, keepdims=True)
     factor = np.ldexp(1.0, -np.frexp(np.where(largest > 0.0, largest, 1.0))[1].clip(-1000, 1000))
     return np.asarray(np.sqrt(_mean((rows * factor) ** 2, counts)) / factor[..., 0])
 
 
-def _deviation(rows: Array, counts: Array) -> Array:
+def _deviation(rows: Array, counts: Array | None) -> Array:
     return _scaled_root(rows - _mean(rows, counts)[..., None], counts)
 
 
-def _percentile(percent: float, rows: Array, counts: Array) -> Array:
+def _percentile(percent: float, rows: Array, counts: Array | None) -> Array:
     imported("numpy.ma")  # by `nanpercentile`
     return np.asarray(np.nanpercentile(rows, percent, axis=-1))
 
@@ -96,17 +111,19 @@ def kind_called(name: str) -> Extreme | Average:
     return OTHERS.get(name) or Average(f"percentile_{name[1:]}", partial(_percentile, float(name[1:])))
 
 
-def place(kind: Extreme, rows: Array, good: Array) -> Array:
-    """The index of the extreme of each row, the first of equals; -1 where nothing is good."""
+def place(kind: Extreme, rows: Array, good: Array | None) -> Array:
+    """The index of the extreme of each row, the first of equals; -1 where nothing is good (None: all is)."""
     if not rows.shape[-1]:
         return np.full(rows.shape[:-1], -1)
+    if good is None:
+        return np.asarray(np.argmax(kind.score(rows), axis=-1))
     # Before the first -inf that is a number there may be one that stands for a NaN.
     found = np.argmax(np.where(good, kind.score(rows), -np.inf) + np.where(good, 0.0, -np.inf), axis=-1)
     found = np.where(np.take_along_axis(good, found[..., None], -1)[..., 0], found, np.argmax(good, axis=-1))
     return np.where(good.any(axis=-1), found, -1)
 
 
-def average(kind: Average, rows: Array, counts: Array) -> Array:
+def average(kind: Average, rows: Array, counts: Array | None) -> Array:
     """A mean, a percentile or another average of each row."""
     if not rows.shape[-1]:
         return np.full(rows.shape[:-1], np.nan)

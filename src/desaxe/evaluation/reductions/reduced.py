@@ -2,9 +2,9 @@
 
     steps = reduced_of(outer, branch, accuracy, reductions)   # the kinds of all names, then each measure
 
-Which kernel a reduction compiles is decided here, in `_kernel_of`. Where one knows the first kinds, it takes
-one axis on the way, and the grid is never stored; the rest is folded in memory. Where all kinds combine, what
-is taken of pieces of an axis is merged; of others (std, percentiles, one kind after another) axes are whole.
+Extremes, means and roots of mean squares are taken along one axis block by block, and the grid is never
+stored; the rest is folded in memory. Where all kinds combine, what is taken of pieces of an axis is merged;
+of others (std, percentiles, one kind after another) axes are whole.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,23 +14,23 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...compiler.languages.numba.reductions import KINDS, outputs_of
+from ...compiler.languages.numba.reductions import KINDS
 from ...mechanism.own import Definition
-from ...runtime.kernels import KernelKey, has_large_angles
-from ...runtime.threads import fill_reduced
-from ...runtime.tiers import COMPILED, tier_of
+from ...runtime.threads import run_parts
 from ..axes import Outer
+from ..chunks import blocks_of, chunk_lengths, longest, slices_of
 from ..labels import Output, attributes, input_attributes, side_attributes
 from ..points import Points, points_of
-from ..under_loads.kernel import UnderLoads, each_point, region_of
 from ..under_loads.sides import sides_of
 from .argument import Chain, Reductions, chain_name, extremes_at_end
 from .in_memory import Field, combined, field_of, folded
-from .kinds import EXTREMES, kind_called
+from .kinds import kind_called
 from .measures import AtPlace, OfDesign
 
 Array = NDArray[Any]
 FLOAT = np.dtype(np.float64)
+BLOCK = 2**15  # points whose values stay in the second-level cache
+BLOCKS = 64  # of a part: an interrupt is heard after it
 
 
 class Reduced(NamedTuple):
@@ -39,15 +39,15 @@ class Reduced(NamedTuple):
     names       those of which a kind is taken
     dims        the axes that are left
     reductions  what is taken
-    of          the values of `names`; the last of its axes is the one that a kernel reduces
-    key         that kernel, if there is one
+    of          the values of `names`
+    along       the last of its axes, if it is reduced first, block by block
     """
 
     names: tuple[str, ...]
     dims: tuple[str, ...]
     reductions: Reductions
     of: Points
-    key: KernelKey | None
+    along: str | None
 
     @property
     def axes(self) -> tuple[str, ...]:
@@ -70,8 +70,8 @@ class Reduced(NamedTuple):
         return [(name, chain) for name in self.names for chain in self.reductions.chains(name)]
 
     def held(self) -> tuple[str, ...]:
-        """The reduced axes whose points are in memory: those that no kernel reduces on the way."""
-        return tuple(name for name in self.reductions.axes if self.key is None or name != self.of.dims[-1])
+        """The reduced axes whose points are in memory behind each number of the outputs."""
+        return *(name for name in self.reductions.axes if name != self.along), *filter(None, [self.along])
 
     def combines(self) -> bool:
         """True if all that is taken follows from what is taken of pieces."""
@@ -113,9 +113,7 @@ class Reduced(NamedTuple):
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The outputs of a block by name, from the values along each of its `axes`."""
-        compiled = self.key is not None and tier_of(self.key, self._points(values, self.of.dims)) == COMPILED
-        compiled = compiled and not ("theta" in values and has_large_angles(values["theta"]))
-        fields, counts = self._chained(self.of, values, compiled, threads)
+        fields, counts = self._chained(values, threads)
         total = self._points(values, self.reductions.axes)
         return self._named(fields, {name: total - count for name, count in counts.items()}, values)
 
@@ -152,92 +150,53 @@ class Reduced(NamedTuple):
             found[variable] = field.values
             found |= {f"{variable}_{axis}": field.places[axis] for axis in extremes_at_end(chain)}
             if self._has_side(chain):
-                found[f"{variable}_side"] = self._side(self.of, name, field, values)
+                found[f"{variable}_side"] = self._side(name, field, values)
             found[f"{name}_skipped"] = skipped[name]
         return found
 
     def _chained(
-        self, of: Points, values: Mapping[str, Array], compiled: bool, threads: int | None
+        self, values: Mapping[str, Array], threads: int | None
     ) -> tuple[dict[str, Field], dict[str, Array]]:
         """The results of all chains, one stage after the other; and how many points of each name count."""
         found: dict[str, Field] = {}
         counts: dict[str, Array] = {}
-        firsts = self._firsts(of, values, compiled, threads)
+        firsts = self._firsts(values, threads)
         for name, chain in self._chains:
             (axes, kind), *rest = chain
             first = firsts[name, kind]
             field = folded(first, [axis for axis in axes if axis in first.dims], kind, values)
             for axes, kind in rest:
-                field = folded(field.counted_anew(), axes, kind, values)
+                field = folded(field_of(field.dims, field.values, field.places), axes, kind, values)
             found[chain_name(name, chain)] = field
-            left = tuple(number for number, axis in enumerate(first.dims) if axis not in self.dims)
-            counts[name] = first.counts.sum(axis=left)
+            counts[name] = first.points([axis for axis in first.dims if axis not in self.dims])
         return found, counts
 
-    def _firsts(
-        self, of: Points, values: Mapping[str, Array], compiled: bool, threads: int | None
-    ) -> dict[tuple[str, str], Field]:
-        """The values by name and kind of the first stage; where a kernel can, reduced along its axis."""
-        stage = self.reductions.stages[0]
-        kinds = tuple(dict.fromkeys(kind for name in self.names for kind in stage.kinds_of(name)))
-        rest, along = of.dims[:-1], of.dims[-1]
-        shape, length = tuple(values[name].size for name in rest), values[along].size
-        if self.key is not None and compiled and length and all(shape):
-            return self._fused(self.key, values, threads)
-        fields = {name: field_of(of.dims, array) for name, array in of.compute(values, threads).items()}
-        first = () if self.key is None else (along,)
-        return {(n, kind): folded(fields[n], first, kind, values) for n in self.names for kind in kinds}
+    def _firsts(self, values: Mapping[str, Array], threads: int | None) -> dict[tuple[str, str], Field]:
+        """The values by name and kind of the first stage, reduced along one axis if that goes by blocks."""
+        stage, dims, along = self.reductions.stages[0], self.of.dims, self.along
+        kinds = [(name, kind) for name in self.names for kind in stage.kinds_of(name)]
+        if along is None:
+            fields = {name: field_of(dims, array) for name, array in self.of.compute(values, threads).items()}
+            return {(name, kind): fields[name] for name, kind in kinds}
+        rest, length = dims[:-1], values[along].size
+        sizes = {name: values[name].size for name in rest}
+        lengths = longest(chunk_lengths("auto", sizes, max(1, BLOCK // max(1, length))))
+        regions = [slices_of(index, sizes, lengths) for index in blocks_of(sizes, lengths)]
+        found = {key: _empty(rest, sizes, along) for key in kinds}
+        of = self.of.cut({**lengths, along: length})
 
-    def _fused(
-        self, key: KernelKey, values: Mapping[str, Array], threads: int | None
-    ) -> dict[tuple[str, str], Field]:
-        """The values by name and kind, reduced along the last axis by the kernel."""
-        rest, along = self.of.dims[:-1], self.of.dims[-1]
-        shape, axis = tuple(values[name].size for name in rest), values[along]
-        outs = {name: np.empty(shape or (1,), kind) for name, kind in outputs_of(self.names, key.reduce)}
-        inside = self.of.inside
-        if inside is None:
-            inputs = {name: np.ascontiguousarray(values[name]) for name, _ in key.axis_of}
-            given: dict[str, Any] = {**dict(self.of.numbers), **inputs}
-        else:
-            given = inside.arguments(values)
-        fill_reduced(key, given, axis.size, list(outs.values()), threads)
-        arrays = {name: out if shape else out.reshape(()) for name, out in outs.items()}
-        places = np.append(axis, np.nan)  # place -1
-        found = {}
-        for name in self.names:
-            for kind in key.reduce:
-                own = f"{name}_{kind}"
-                at = {along: np.asarray(places[arrays[f"{own}_place"]])} if kind in EXTREMES else {}
-                found[name, kind] = Field(rest, arrays[own], arrays[f"{name}_count"], at)
-        if inside is not None:
-            self._repair(self.of, inside, values, found)
+        def part(start: int, stop: int) -> None:
+            for region in regions[start:stop]:
+                block = {**values, **{name: values[name][one] for name, one in region.items()}}
+                fields = {name: field_of(dims, array) for name, array in of.compute(block, 1).items()}
+                for name, kind in kinds:
+                    one = folded(fields[name], [along], kind, values)
+                    found[name, kind].fill(tuple(region.values()), one)
+
+        run_parts(part, len(regions), threads, 2, BLOCKS)
         return found
 
-    def _repair(
-        self, of: Points, inside: UnderLoads, values: Mapping[str, Array], found: Mapping[Any, Field]
-    ) -> None:
-        """Reduce the rows anew in which rounding may decide on the side of a jump."""
-        rest, along = of.dims[:-1], of.dims[-1]
-        index = inside.open(values)
-        some = [name for name in index or () if name in rest]
-        if index is not None:
-            alone = np.unique(np.stack([index[name] for name in some]), axis=1) if some else ()
-            index = dict(zip(some, alone, strict=True))
-        some = some or list(rest[:1])  # row by row
-        for point in each_point(index, {name: values[name].size for name in some}):
-            block = {n: values[n][point[n] : point[n] + 1] if n in point else values[n] for n in of.dims}
-            shape, region = tuple(block[name].size for name in of.dims), region_of(point, rest)
-            rows = [np.empty(shape) for _ in of.names]
-            of.fill_inside(block, rows, 1)
-            lines = {name: field_of(of.dims, row) for name, row in zip(of.names, rows, strict=True)}
-            for (name, kind), field in found.items():
-                new = folded(lines[name], [along], kind, values)
-                field.values[region], field.counts[region] = new.values, new.counts
-                for axis, places in new.places.items():
-                    field.places[axis][region] = places
-
-    def _side(self, of: Points, name: str, field: Field, values: Mapping[str, Array]) -> Array:
+    def _side(self, name: str, field: Field, values: Mapping[str, Array]) -> Array:
         """The sides of jumps on which extremes over theta are; 0 where other inputs were averaged."""
         shape = field.values.shape
         grids = np.meshgrid(*(values[axis] for axis in self.dims), indexing="ij")
@@ -245,7 +204,7 @@ class Reduced(NamedTuple):
         flat = {axis: np.ascontiguousarray(column).reshape(-1) for axis, column in points.items()}
         if not set(self.axes) <= set(flat):
             return np.zeros(shape, np.int8)
-        return sides_of(name, of, flat).reshape(shape)
+        return sides_of(name, self.of, flat).reshape(shape)
 
 
 def reduced_of(
@@ -256,8 +215,8 @@ def reduced_of(
     names = tuple(name for name in outer.names if reductions.chains(name))
     steps: list[Reduced | AtPlace | OfDesign] = []
     if names:
-        of, key = _kernel_of(names, dims, outer, branch, accuracy, reductions)
-        steps.append(Reduced(names, dims, reductions, of, key))
+        of, along = _values_of(names, dims, outer, branch, accuracy, reductions)
+        steps.append(Reduced(names, dims, reductions, of, along))
     for one in reductions.at:
         axis = reductions.axes[0]
         there = outer._replace(axes={**outer.axes, axis: np.array([one.place])})
@@ -270,23 +229,24 @@ def reduced_of(
     return tuple(steps)
 
 
-def _kernel_of(
+def _values_of(
     names: Sequence[str],
     dims: Sequence[str],
     outer: Outer,
     branch: int,
     accuracy: Any,
     reductions: Reductions,
-) -> tuple[Points, KernelKey | None]:
-    """The values of names over all axes, and the kernel that reduces one of them on the way."""
+) -> tuple[Points, str | None]:
+    """The values of names over all axes, and the last of these if it is reduced first, block by block."""
     stage, axes = reductions.stages[0], (*dims, *reductions.axes)
-    kinds = tuple(dict.fromkeys(kind for name in names for kind in stage.kinds_of(name)))
+    if {kind for name in names for kind in stage.kinds_of(name)} - set(KINDS):
+        return points_of(names, outer, axes, branch, accuracy), None
     along = "theta" if "theta" in stage.axes else max(stage.axes, key=lambda name: outer.axes[name].size)
     last = *(name for name in axes if name != along), along
-    of = points_of(names, outer, last, branch, accuracy)
-    if (of.loads is not None and of.inside is None) or set(kinds) - set(KINDS):
-        return (of if axes == last else points_of(names, outer, axes, branch, accuracy)), None
-    key = of.key if of.inside is None else of.inside.key
-    alone = len(last) == 1  # a kernel has an axis beside the one that it reduces
-    axis_of = tuple((n, last.index(n if n in last else "theta") + alone) for n, _ in key.axis_of)
-    return of, key._replace(axis_of=axis_of, axes=len(last) + alone, reduce=kinds)
+    return points_of(names, outer, last, branch, accuracy), along
+
+
+def _empty(dims: tuple[str, ...], sizes: Mapping[str, int], along: str) -> Field:
+    """A field to be filled, of values that are reduced along an axis."""
+    values, places = (np.empty([*sizes.values()]) for _ in range(2))
+    return Field(dims, values, np.empty(values.shape, np.int64), {along: places})

@@ -23,7 +23,7 @@ from ...mechanism.own import using
 from ...mechanism.program import digest
 from ...mechanism.quantity_units import UnitSystem
 from ...runtime.executor import is_ready
-from ...runtime.kernels import STORE, KernelKey, kernel_of
+from ...runtime.kernels import KernelKey, kernel_of
 from ...runtime.request import Request
 from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available
@@ -192,7 +192,7 @@ def _grid(content: Content, plan: Plan) -> dict[str, Any]:
         "skipped": [one._asdict() for one in skipped_of(found.key, found.request, given)],
         "loops": [_loop(loop, found.points) for loop in loops],
         "operations": {"straight": straight, "per_point": total / found.points, "total": total},
-        "reduction": _reduction(plan, found.key),
+        "reduction": _reduction(plan),
         "loads": [load._asdict() for load in loads],
         "run": _run(content, found, compiled),
         "memory": _memory(plan, found),
@@ -201,22 +201,21 @@ def _grid(content: Content, plan: Plan) -> dict[str, Any]:
 
 def _kernel_of(plan: Plan) -> GridKernel:
     """The kernel of a plan, with its loops: axes joined to one have a name together."""
-    (step, *_) = plan.steps
     points = points_of(plan)
     of = points.inside or points
-    key = step.key or of.key if isinstance(step, Reduced) else of.key
-    order = [*[""] * (key.axes - of.first - 1 if key.reduce else not of.dims), *of.dims]
-    first = len(order) - 1 if key.reduce else of.first
+    order, first = list(of.dims) or [""], of.first
     sizes = [plan.outer.axes[name].size if name else 1 for name in order]
     axes = (*order[:first], " x ".join(order[first:]))
-    return GridKernel(of.wanted, axes, (*sizes[:first], prod(sizes[first:])), key)
+    return GridKernel(of.wanted, axes, (*sizes[:first], prod(sizes[first:])), of.key)
 
 
-def _reduction(plan: Plan, key: KernelKey) -> dict[str, Any] | None:
+def _reduction(plan: Plan) -> dict[str, Any] | None:
     taken = plan.reductions
     if taken is None:
         return None
-    return {"axis": ", ".join(taken.axes), "kinds": taken.kinds, "stored": not key.reduce}
+    (step, *_) = plan.steps
+    stored = isinstance(step, Reduced) and step.along is None
+    return {"axis": ", ".join(taken.axes), "kinds": taken.kinds, "stored": stored}
 
 
 def _compiled_loops(found: GridKernel) -> list[LoopCost]:
@@ -240,7 +239,6 @@ def _loop(loop: LoopCost, points: int) -> dict[str, Any]:
 
 def _run(content: Content, found: GridKernel, compiled: bool) -> dict[str, Any]:
     """The execution of the grid: tier, threads, what is cached."""
-    ready = STORE.is_ready if found.key.reduce else is_ready
     threads = max(1, min(content.threads or available(), found.points // LEAST_BLOCK, found.sizes[0]))
     return {
         "way": "compiled" if compiled else "plain Python",
@@ -250,7 +248,7 @@ def _run(content: Content, found: GridKernel, compiled: bool) -> dict[str, Any]:
         "far_angles": found.key.far,
         "wide_margins": found.key.form.wide_margins,
         "threads": threads if compiled else 1,
-        "cached": "memory" if ready(found.key) else "no",
+        "cached": "memory" if is_ready(found.key) else "no",
     }
 
 

@@ -81,7 +81,9 @@ def text_of(scene: Scene, name: str = "my_kernels.py", form: Form = PLAIN) -> st
         calls.append(
             run_function(shown, list(axes), kernels.inputs, own_axes(content, shown), opened)
             if content.fused is None
-            else run_reduced_function(shown, key.reduce, order, kernels.inputs, kernels.outputs, opened)
+            else run_reduced_function(
+                shown, content.fused.kinds, order, kernels.inputs, kernels.outputs, opened
+            )
         )
     calls += peaks.functions
     tables = [AFFINITY, text_file("compiled")] if compiles else []
@@ -132,8 +134,7 @@ def _key(content: Content, asked: PortableRequest, order: Sequence[str]) -> Kern
         key = key._replace(far=True)
     anywhere = key.form._replace(wide_margins=False)  # the module takes other designs, too
     fixed = tuple((dict(key.fixed) | numbers).items())
-    kinds = () if content.fused is None else content.fused.kinds
-    return key._replace(names=asked.shown, form=anywhere, fixed=fixed, reduce=kinds)
+    return key._replace(names=asked.shown, form=anywhere, fixed=fixed)
 
 
 def _scalars(
@@ -172,14 +173,15 @@ class Kernels(NamedTuple):
 
 def _kernels(made: Made, key: KernelKey, inputs: tuple[str, ...]) -> Kernels:
     """The kernels of a scene; the array kernel takes the inputs in the order in which they stand in names."""
-    kernel = made.kernel(key._replace(axis_of=tuple((n, 0) for n in sorted(inputs)), axes=1, reduce=()))
+    kernel = made.kernel(key._replace(axis_of=tuple((n, 0) for n in sorted(inputs)), axes=1))
     numbers = {name: axis for name, axis in kernel.inputs.items() if axis is None}
     of_points = {name: kernel.inputs[name] for name in inputs} | numbers
     kernel = kernel._replace(inputs=of_points)
     parts = [_named("point", [*loops_parts(kernel), text_file("kernel")])]
     if key.axes > 1:
         kernel = made.kernel(key)
-        reduced = key.reduce and reduced_parts(kernel, key.reduce, REDUCED)
+        fused = made.content.fused
+        reduced = fused and reduced_parts(kernel, fused.kinds, REDUCED)
         parts.append(_named("grid", reduced or [*loops_parts(kernel), text_file("kernel")]))
     return Kernels(parts, kernel.inputs, kernel.outputs, of_points)
 
