@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from .definitions.define import undefine as undefine
     from .design.design_map import design_map as design_map
     from .design.drive.drive import drive as drive
-    from .design.drive.flywheel import flywheel as flywheel
     from .design.events.events import events as events
     from .design.feasibility.feasibility import feasibility as feasibility
     from .design.fit.fit import fit as fit
@@ -69,7 +68,6 @@ PUBLIC = {
     "tolerance": "desaxe.design.tolerance.tolerance",
     "harmonics": "desaxe.design.turn.harmonics",
     "counterweight": "desaxe.design.turn.counterweight",
-    "flywheel": "desaxe.design.drive.flywheel",
     "drive": "desaxe.design.drive.drive",
     "explore": "desaxe.scenes.explorer.explore",
     "to_excel": "desaxe.machine.excel",
@@ -115,7 +113,6 @@ __all__ = [
     "explore",
     "feasibility",
     "fit",
-    "flywheel",
     "function",
     "grid",
     "harmonics",

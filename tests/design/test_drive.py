@@ -173,10 +173,8 @@ def test_a_simulated_turn_with_the_flywheel(mu, fluctuation):
     assert (fast + slow) / 2 == pytest.approx(40.0, rel=1e-6)
 
 
-def test_the_flywheel_of_flywheel():
+def test_a_fluctuation_in_percent_and_a_crank_that_needs_no_flywheel():
     found = dx.drive(fluctuation=0.02, **PRESS)
-    with pytest.warns(DeprecationWarning, match="drive"):
-        assert found["flywheel_inertia"] == dx.flywheel(fluctuation=0.02, **PRESS)["inertia"]
     assert dx.drive(fluctuation="2 %", **PRESS) == found
     heavy = dx.drive(fluctuation=0.02, **PRESS, I_crank=100.0)
     assert heavy["flywheel_inertia"] == 0.0

@@ -73,7 +73,7 @@ TABLE = [  # a call and what is good for it; what is changed, the error and its 
         ({"along": "Z"}, ValueError, "along = 'Z'"),
         ({"omega0": None}, ValueError, "omega0 is missing or 0"),
     ]),
-    ((dx.flywheel,), WHEEL, [
+    ((dx.drive,), WHEEL, [
         ({"F_Y": lambda theta: {}[theta]}, ValueError, r"function failed at theta = -?\d+[.]\d+: KeyError"),
         ({"F_Y": lambda theta: np.ones(3)}, ValueError, r"F_Y: a function of \d+ angles gave the shape"),
         ({"F_Y": lambda theta: np.nan}, ValueError, "F_Y: the function gave nan"),
@@ -197,7 +197,6 @@ def rows():
             yield pytest.param(call, given, {**good, **change}, error, words, id=name)
 
 
-@pytest.mark.filterwarnings("ignore:flywheel:DeprecationWarning")
 @pytest.mark.parametrize(("call", "given", "inputs", "error", "words"), [*rows()])
 def test_wrong_input_is_named(call, given, inputs, error, words):
     with pytest.raises(error, match=words):

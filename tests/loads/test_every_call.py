@@ -155,9 +155,6 @@ def turns(truth, draw, folder):
     assert motor["torque_mean"] == pytest.approx(mean, **room)
     assert motor["torque_rms"] == pytest.approx(rms, rel=1e-9)
     assert motor["torque_peak"] == pytest.approx(truth.largest(), rel=1e-9)
-    with pytest.warns(DeprecationWarning, match="flywheel"):
-        wheel = dx.flywheel(fluctuation=0.1, **inputs)
-    assert wheel["mean_torque"] == pytest.approx(mean, **room)
     series = dx.harmonics("T_in", orders=3, **inputs)
     wave = truth.wave(3)
     near([series["mean"], series["cos"][3], series["sin"][3]], [mean, wave.real, -wave.imag], **room)

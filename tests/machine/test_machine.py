@@ -73,12 +73,6 @@ def test_a_method_is_its_function(name):
         same(found, function(**given, **{k: v for k, v in PRESS.items() if k not in given}))
 
 
-def test_its_deprecated_flywheel_names_the_call_of_the_machine():
-    with pytest.warns(DeprecationWarning, match="flywheel"):
-        found = PRESS.flywheel(fluctuation=0.02)
-    assert found["inertia"] == PRESS.drive(fluctuation=0.02)["flywheel_inertia"]
-
-
 def test_signatures_and_documentation_are_those_of_the_functions():
     for name in CALLS:
         function, method = getattr(dx, name), getattr(dx.Machine, name)

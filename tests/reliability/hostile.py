@@ -204,7 +204,6 @@ def calls() -> dict[str, Call]:
         "between": Call(dx.between, (), {"low": 0.0, "high": 1.0}),
         "plus_minus": Call(dx.plus_minus, (), {"value": 1.0, "tolerance": 0.1}),
         "equation": Call(dx.equation, (), {"name": "a_C"}, ("form",)),
-        "flywheel": Call(dx.flywheel, (), {"fluctuation": 0.02, "m_slider": 1.0, "F_Y": 10.0, **MACHINE}),
         "design_map": Call(
             dx.design_map, (), {"ec": [0.0, 0.01], "AB": 0.125, "BC": 0.35}, ("names", "branch")
         ),

@@ -36,7 +36,6 @@ METHODS = {
     "enclose": "desaxe.enclosure.enclose",
     "harmonics": "desaxe.design.turn.harmonics",
     "counterweight": "desaxe.design.turn.counterweight",
-    "flywheel": "desaxe.design.drive.flywheel",
     "drive": "desaxe.design.drive.drive",
     "steady": "desaxe.design.steady.steady",
     "fit": "desaxe.design.fit.fit",

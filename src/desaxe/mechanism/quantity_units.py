@@ -28,13 +28,13 @@ OTHERS = {
     **dict.fromkeys(
         (
             "torque", "torque_mean", "torque_rms", "torque_peak", "starting_torque", "flywheel_torque",
-            "T_motor", "breakdown_torque", "mean_torque", "max_torque", "min_torque", "ripple",
+            "T_motor", "breakdown_torque",
         ),
         "N*m",
     ),
-    **dict.fromkeys(("work", "work_in", "work_out", "energy_fluctuation"), "J"),
+    **dict.fromkeys(("work", "work_in", "work_out"), "J"),
     **dict.fromkeys(("power_mean", "power_peak"), "W"),
-    **dict.fromkeys(("inertia", "inertia_first_order", "flywheel_inertia"), "kg*m^2"),
+    "flywheel_inertia": "kg*m^2",
     **dict.fromkeys(("breakdown_slip", "gear"), "1"),
     "radius": "m",
     "mass": "kg",

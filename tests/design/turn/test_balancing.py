@@ -59,12 +59,6 @@ def test_next_to_the_change_point_the_stated_error_holds():
         )
 
 
-def flywheel(**given):
-    """The deprecated call."""
-    with pytest.warns(DeprecationWarning, match=r"flywheel\(\.\.\.\) .*: drive\(fluctuation="):
-        return dx.flywheel(**given)
-
-
 def with_weight(product, angle):
     """The shaking force with a mass on the crank, by its centrifugal force."""
     force = dx.evaluate(["F_shaking_X", "F_shaking_Y"], theta=ANGLES, **PRESS)
@@ -133,56 +127,30 @@ def test_a_flywheel_in_a_simulated_motion(fluctuation):
         return -500.0 * np.where(np.sin(theta) < 0, np.sin(theta) ** 2, 0.0)
 
     machine = {**PRESS, "I_rod": 1e-3}
-    found = flywheel(fluctuation=fluctuation, F_Y=load, **machine)
+    found = dx.drive(fluctuation=fluctuation, F_Y=load, **machine)
     mean = machine.pop("omega0")
-    start = found["theta_fastest"]
     run = dx.simulate(
-        torque=found["mean_torque"], F_Y=lambda t, theta, omega: float(load(theta)), theta0=start, rtol=1e-10,
-        omega_start=mean * (1 + fluctuation / 2), I_crank=found["inertia"], t_end=0.06, **machine,
+        torque=found["torque_mean"], F_Y=lambda t, theta, omega: float(load(theta)), rtol=1e-10, t_end=0.06,
+        theta0=found.course["theta_of_speed"][0], omega_start=found.course["speed"][0],
+        I_crank=found["flywheel_inertia"], **machine,
     )  # fmt: skip
     fastest, slowest = run["omega"].max(), run["omega"].min()
     assert (fastest + slowest) / 2 == pytest.approx(mean, rel=1e-5)
     assert (fastest - slowest) / mean == pytest.approx(fluctuation, rel=1e-4)
-    slow = run["theta"][np.argmin(run["omega"])]
-    assert math.cos(slow - found["theta_slowest"]) > 0.999
-    # The textbook's estimate holds to first order in the fluctuation.
-    assert found["inertia_first_order"] == pytest.approx(found["inertia"], rel=3 * fluctuation)
 
 
-def test_extremes_between_the_steps():
-    """Refined peaks, where there are such, and the kinetic energy that goes to and fro."""
-    found = flywheel(fluctuation=0.02, **PRESS)
-    assert found["mean_torque"] == pytest.approx(0.0, abs=1e-9)  # nothing but masses
-    assert found["ripple"] == pytest.approx(found["max_torque"] - found["min_torque"], rel=1e-12)
-    assert flywheel(fluctuation=0.02, mu=0.1, **PRESS)["mean_torque"] > 0.0
-    for kind in ("max", "min"):
-        peak = dx.peak("T_in", kind=kind, **PRESS)
-        assert found[f"{kind}_torque"] == pytest.approx(peak["value"], rel=1e-10)
-        assert found[f"theta_{kind}_torque"] == pytest.approx(peak["theta"], abs=1e-6)
-    energy = [dx.peak("kinetic_energy", kind=kind, **PRESS)["value"] for kind in ("max", "min")]
-    assert found["energy_fluctuation"] == pytest.approx(energy[0] - energy[1], rel=1e-10)
-    # Without a load (J + M_eff) omega^2 stays the same: the extremes of M_eff are those of the speed.
+def test_a_flywheel_without_a_load():
+    """(J + M_eff) omega^2 stays the same: the extremes of M_eff are those of the speed."""
+    J = dx.drive(fluctuation=0.02, **PRESS)["flywheel_inertia"]
     heavy, light = (dx.peak("M_eff", kind=kind, **PRESS)["value"] for kind in ("max", "min"))
-    ratio = math.sqrt((found["inertia"] + heavy) / (found["inertia"] + light))  # fastest over slowest
+    ratio = math.sqrt((J + heavy) / (J + light))  # fastest over slowest
     assert 2 * (ratio - 1) / (ratio + 1) == pytest.approx(0.02, rel=1e-9)
-
-
-def test_a_mechanism_without_masses():
-    """No inertia: a load stops it or flings it round, and without a load nothing happens."""
-    lengths = {"ec": 0, "AB": 0.05, "BC": 0.2, "omega0": 100.0}
-    assert flywheel(fluctuation=0.02, **lengths)["inertia"] == 0.0
-    assert flywheel(fluctuation="2 %", **PRESS) == flywheel(fluctuation=0.02, **PRESS)
-    loaded = flywheel(fluctuation=0.02, F_Y=lambda theta: -10 * np.sin(theta) ** 2, **lengths)
-    assert loaded["fluctuation_without"] == math.inf
-    assert loaded["inertia"] == pytest.approx(loaded["inertia_first_order"], rel=1e-3)
-    heavy = flywheel(fluctuation=0.02, I_crank=10.0, **PRESS)
-    assert heavy["inertia"] == 0.0
-    assert heavy["fluctuation_without"] < 0.02
 
 
 def test_a_load_may_be_a_function_of_one_angle():
     def load(theta):
         return -50.0 * math.cos(theta) if theta % (2 * math.pi) < 3.0 else 0.0
 
-    of_arrays = flywheel(fluctuation=0.02, F_Y=np.vectorize(load), **PRESS)
-    assert flywheel(fluctuation=0.02, F_Y=load, **PRESS) == pytest.approx(of_arrays, rel=1e-12)
+    one, other = (dx.drive(fluctuation=0.02, F_Y=f, **PRESS) for f in (load, np.vectorize(load)))
+    for name in ("torque_rms", "work_in", "flywheel_inertia"):
+        assert one[name] == pytest.approx(other[name], rel=1e-12)

@@ -31,10 +31,7 @@ SETTLED = 1e-12  # of the inertia: what a correction may still change
 
 
 class Flywheel(NamedTuple):
-    """Inertia [kg m^2], constant torque [N m], their derivatives by name, and the speed over the turn.
-
-    It is fastest and slowest at these angles; `without` is the fluctuation without it, NaN with friction.
-    """
+    """Inertia [kg m^2], constant torque [N m], their derivatives by name, and the speed over the turn."""
 
     inertia: float
     torque: float
@@ -42,9 +39,6 @@ class Flywheel(NamedTuple):
     torque_gradient: dict[str, float]
     theta: Array
     omega: Array
-    fastest: float
-    slowest: float
-    without: float
 
 
 class FlywheelMotion(NamedTuple):
@@ -55,7 +49,6 @@ class FlywheelMotion(NamedTuple):
     torque: float
     fastest: float
     slowest: float
-    without: float
 
     def motion(self, theta: Array) -> dict[str, Array]:
         """Speed and acceleration at angles."""
@@ -76,8 +69,7 @@ def flywheel_for(design: Turn, fluctuation: float) -> Flywheel | None:
     slopes = _gradient(design, fluctuation, state)
     inertia, torque = ({name: pair[k] for name, pair in slopes.items()} for k in (1, 0))
     omega = state.panels.values["omega"].ravel()
-    places = state.fastest, state.slowest, state.without if not design.has_friction else nan
-    return Flywheel(state.inertia, state.torque, inertia, torque, state.panels.x.ravel(), omega, *places)
+    return Flywheel(state.inertia, state.torque, inertia, torque, state.panels.x.ravel(), omega)
 
 
 def _store(design: Turn, fluctuation: float, before: FlywheelMotion | None) -> FlywheelMotion:
@@ -104,8 +96,8 @@ def _store(design: Turn, fluctuation: float, before: FlywheelMotion | None) -> F
         return storing(panels, work, M, speed, share)
 
     J, C, fastest, slowest = stored(fluctuation)
-    without = _without(lambda share: stored(share)[0], fluctuation, J)
     if J <= 0.0:  # the mechanism itself stores more than is needed
+        without = _without(lambda share: stored(share)[0], fluctuation, J)
         (_, C, fastest, slowest), J = stored(max(without, 1e-9 * fluctuation)), 0.0
     inertia = np.maximum(J + M, 1e-300)
     z = np.maximum(2.0 * (C + work) / inertia, 0.0) if (J + M).any() else np.full_like(M, speed**2)
@@ -113,7 +105,7 @@ def _store(design: Turn, fluctuation: float, before: FlywheelMotion | None) -> F
         "omega": design.direction * np.sqrt(z),
         "alpha": (drive - load - 0.5 * slope * z) / inertia,
     }
-    return FlywheelMotion(Panels(panels.edges, values), J, drive, fastest, slowest, without)
+    return FlywheelMotion(Panels(panels.edges, values), J, drive, fastest, slowest)
 
 
 def storing(panels: Panels, work: Array, M: Array, speed: Any, share: Any) -> tuple[Any, Any, Any, Any]:
