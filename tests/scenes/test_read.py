@@ -309,3 +309,12 @@ def test_a_unit_without_quotes_is_told(tmp_path):
     path.write_text("[mechanism]\nAB = 125 mm\n", encoding="utf-8")
     with pytest.raises(SceneError, match=r'in quotes: AB = "125 mm"'):
         dx.scene(path)
+
+
+@pytest.mark.parametrize(("units", "text"), [("", "m/s^2"), ("mm, deg", "mm/s^2")])
+def test_a_whole_printed_number_has_no_decimals(units, text):
+    """As its text has none: -7740 is printed to tens."""
+    table = {"units": units, "outputs": ["Y"], "mechanism": {"ec": 0, "AB": "40 mm", "BC": "0.13 m"}}
+    motion, check = {"theta": 1, "omega0": 100}, [{"printed": {"a_C": -7740}}]
+    checks = dx.scene({**table, "motion": motion, "check": check}).content.checks
+    assert (checks[0].printed.place, checks[0].printed.unit) == (1, text)

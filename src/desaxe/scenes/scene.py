@@ -14,8 +14,8 @@ from ..support.progress import Progress, progress_bar
 from ..support.shown import printable
 from .content import Content
 from .reading.read import plain_data, read
-from .reading.units import units_written
 from .reading.values import Value
+from .reading.written import units_written
 from .report import report
 from .run import Run, compute, steps_of, write_files
 from .schema import SceneError as SceneError

@@ -45,8 +45,10 @@ Memory = Annotated[int | str, Meta(description='text such as "200 MB", or a numb
 Number = Annotated[float | str, Meta(description=_NUMBER)]
 Count = Annotated[int, Meta(ge=1, description="a whole number, at least 1")]
 Points = Annotated[int, Meta(ge=2, description="a whole number, at least 2")]
-Printed = Annotated[float | str, Meta(description='text as it is printed, such as "-20.2 m/s", or a number')]
-Percent = Annotated[float | str, Meta(description='a percentage such as "33 %"')]
+Printed = Annotated[
+    int | float | str, Meta(description='text as it is printed, such as "-20.2 m/s", or a number')
+]
+Percent = Annotated[int | float | str, Meta(description='a percentage such as "33 %"')]
 Branch = Annotated[Literal[1, -1], Meta(description="1 (the papers) or -1")]
 Kind = Annotated[Literal["absmax", "max", "min"], Meta(description="one of absmax, max, min")]
 Units = Annotated[

@@ -43,7 +43,7 @@ def _others(content: Content) -> Iterator[PeakResult]:
     for name in content.outputs:
         if not any(one.quantity == name for one in content.peaks):
             try:
-                wanted = peak_of("report", schema.PeakTable(quantity=name), content.inputs)
+                wanted = peak_of("report", schema.PeakTable(quantity=name), content.inputs, content.units)
             except SceneError:  # a status, or a quantity of the whole design
                 continue
             yield peaks_of(wanted, content, Steps(1, None))

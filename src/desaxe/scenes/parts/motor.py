@@ -65,7 +65,9 @@ def on_motor(
             raise SceneError(f"steady: {name} is missing: give mechanism.{name}")
     motor = torque if isinstance(torque, Motor) else _motor(table.torque, units, folder)
     given = {n: v for n, v in inputs.items() if n != "theta" and n not in SPEEDS}
-    given |= {name: _numbers(name, written) for name in ROWS if (written := getattr(table, name)) is not None}
+    given |= {
+        name: _numbers(name, written, units) for name in ROWS if (written := getattr(table, name)) is not None
+    }
     speeds = {n: v for n, v in inputs.items() if n in SPEEDS}
     if np.any(np.asarray(speeds.get("alpha", 0.0), float)):
         raise SceneError("motion.alpha: a steady state has its own course of the speed; leave it out")
@@ -78,16 +80,16 @@ def on_motor(
     return OnMotor(motor, axes, fixed, table.fluctuation is not None)
 
 
-def _numbers(name: str, written: Any) -> Any:
+def _numbers(name: str, written: Any, units: UnitSystem) -> Any:
     """A number, or several, of the flywheel or the fluctuation."""
     if isinstance(written, tuple):
-        return tuple(_number(f"{name} #{k}", ROWS[name], part) for k, part in enumerate(written, 1))
-    return _number(name, ROWS[name], written)
+        return tuple(_number(f"{name} #{k}", ROWS[name], part, units) for k, part in enumerate(written, 1))
+    return _number(name, ROWS[name], written, units)
 
 
-def _number(key: str, row: Input, written: Any) -> float:
+def _number(key: str, row: Input, written: Any, units: UnitSystem) -> float:
     try:
-        number = read_number(row, f"steady.{key}", written)
+        number = read_number(row, f"steady.{key}", written, units)
     except TypeError:
         raise SceneError(f"steady.{key} = {shown(written)}: it must be {row.limit}") from None
     if row is FLUCTUATION and number >= 2.0:
@@ -98,7 +100,7 @@ def _number(key: str, row: Input, written: Any) -> float:
 def _motor(written: Any, units: UnitSystem, folder: Path | None) -> Any:
     """The motor, or the number, of a torque as it stands in a scene."""
     if not isinstance(written, schema.MotorTable):
-        return _number("torque", TORQUE, written)
+        return _number("torque", TORQUE, written, units)
     if (written.over_omega is None) == (written.kloss is None):
         raise SceneError('steady.torque: a motor has over_omega = "motor.csv", [...] or kloss = {...}')
     key = "over_omega" if written.kloss is None else "kloss"

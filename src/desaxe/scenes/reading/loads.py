@@ -41,10 +41,10 @@ def without_objects(data: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def varying(key: str, name: str, written: Varying, folder: Path | None) -> Value:
+def varying(key: str, name: str, written: Varying, folder: Path | None, units: UnitSystem) -> Value:
     """The values of a range, or a load that varies with the motion."""
     if any(getattr(written, over) is not None for over in OWN):
-        return load_of(key, written, folder)
+        return load_of(key, written, folder, units)
     given = {n: getattr(written, n) for n in written.__struct_fields__ if getattr(written, n) is not None}
     wrong = next((n for n in given if n not in RANGE), None)
     if wrong is not None:
@@ -52,10 +52,10 @@ def varying(key: str, name: str, written: Varying, folder: Path | None) -> Value
     for end in ("start", "stop"):
         if end not in given:
             raise SceneError(f"{key}.{end} is missing: a range has start, stop, and num or step")
-    return values_of(key, name, Range(**given))
+    return values_of(key, name, Range(**given), units)
 
 
-def load_of(key: str, written: Varying, folder: Path | None) -> Load:
+def load_of(key: str, written: Varying, folder: Path | None, units: UnitSystem) -> Load:
     """The load that a table of a scene stands for.
 
     folder   of the scene file: a load's file is looked for there first, then in the current directory
@@ -72,7 +72,7 @@ def load_of(key: str, written: Varying, folder: Path | None) -> Load:
     try:
         if isinstance(source, str):
             return _from_file(over, source, given, folder)
-        return _from_points(over, source, given)
+        return _from_points(over, source, given, units)
     except MissingExtraError:
         raise
     except (ValueError, TypeError) as error:
@@ -114,8 +114,8 @@ def _from_file(over: str, name: str, given: dict[str, Any], folder: Path | None)
     return made
 
 
-def _from_points(over: str, points: Sequence[Any], given: dict[str, Any]) -> Load:
-    units = [given.pop(name, None) for name in (UNITS[over], "value")]
+def _from_points(over: str, points: Sequence[Any], given: dict[str, Any], units: UnitSystem) -> Load:
+    beside = [given.pop(name, None) for name in (UNITS[over], "value")]
     first, *others = COLUMNS[over]
     if first not in given:
         rows = [row if isinstance(row, tuple) else (row,) for row in points]
@@ -124,10 +124,10 @@ def _from_points(over: str, points: Sequence[Any], given: dict[str, Any]) -> Loa
         given |= dict(zip((first, *others), columns, strict=False))
     if any(isinstance(point, tuple) for point in points):
         raise ValueError(f"points with their values and {first} = [...] beside them: give one of them")
-    given |= {name: _with_unit(given[name], units[1]) for name in COLUMNS[over] if name in given}
+    given |= {name: _with_unit(given[name], beside[1]) for name in COLUMNS[over] if name in given}
     if "period" in given:
-        (given["period"],) = _with_unit([given["period"]], units[0])
-    made: Load = MAKE[over](_with_unit(points, units[0]), **given)
+        (given["period"],) = _with_unit([given["period"]], beside[0])
+    made: Load = type(MAKE[over])(units or None)(_with_unit(points, beside[0]), **given)
     return made
 
 

@@ -3,8 +3,8 @@
 from decimal import ROUND_HALF_EVEN, Context, Decimal
 from typing import NamedTuple
 
-from ...support.forks import IMPORTS
-from ...units.text import spelled, split_quantity
+from ...units.parse import factor_to_si
+from ...units.text import split_quantity
 from ..schema import SceneError, shown
 
 MOST_DIGITS = 15  # in front of the point; a larger number is written as a power of ten
@@ -68,14 +68,10 @@ def read_percentage(key: str, written: str | float) -> Printed:
 
 
 def _factor(complaint: str, unit: str, si: str) -> float:
-    """The factor from the SI unit to a unit, also in the spelling m/s2 for m/s^2."""
-    if spelled(unit).replace(" ", "") == si or unit == "%":
+    """The factor from the SI unit to a unit."""
+    if unit == "%":
         return 1.0
-    with IMPORTS:
-        from ...units.pint_units import registry
-
-    units = registry()
     try:
-        return float(units.Quantity(1.0, si).to(spelled(unit)).magnitude)
-    except Exception as error:
-        raise SceneError(f"{complaint}: its unit must be one of {si} ({error})") from None
+        return float(1 / factor_to_si(complaint, unit, si))
+    except ValueError as error:
+        raise SceneError(str(error)) from None

@@ -31,8 +31,8 @@ from ..schema import SECTIONS, SceneError, shown
 from .loads import require_units_of_file, varying, without_objects
 from .needs import require_for_grid, require_known
 from .requested import checks_of, peak_of, picture_of
-from .units import slips_of, units_of, with_units
 from .values import Value, values_of
+from .written import slips_of
 
 PICTURES = (".png", ".svg", ".pdf")
 DATA = (".nc", ".zarr", ".csv", ".xlsx", ".npz")
@@ -66,7 +66,6 @@ def read(data: Mapping[str, Any], folder: Path | None = None) -> Content:
     folder   where the scene file is, and perhaps the files of its loads
     """
     units = _units(data)
-    data = with_units(data, units)
     file = schema.decoded(without_objects(data))
     own = _defined(data.get("quantities", {}))
     with using(own):
@@ -98,10 +97,14 @@ def _content(
         )
     _require_names(file)
     checks = [
-        c for index, table in enumerate(file.check, 1) for c in checks_of(f"check #{index}", table, inputs)
+        c
+        for index, table in enumerate(file.check, 1)
+        for c in checks_of(f"check #{index}", table, inputs, units)
     ]
-    peaks = [peak_of(f"peak #{index}", table, inputs) for index, table in enumerate(file.peak, 1)]
-    pictures = [picture_of(f"picture #{index}", table, inputs) for index, table in enumerate(file.picture, 1)]
+    peaks = [peak_of(f"peak #{index}", table, inputs, units) for index, table in enumerate(file.peak, 1)]
+    pictures = [
+        picture_of(f"picture #{index}", table, inputs, units) for index, table in enumerate(file.picture, 1)
+    ]
     motor = (
         None
         if file.steady is None
@@ -144,7 +147,7 @@ def _storage(
 def _units(data: Mapping[str, Any]) -> UnitSystem:
     """The units of the scene; a warning where a plain number is almost surely meant in another one."""
     try:
-        units = units_of(data)
+        units = UnitSystem.read(data.get("units"))
     except (ValueError, TypeError) as error:
         raise SceneError(str(error)) from None
     _warn(slips_of(data, units))
@@ -222,11 +225,11 @@ def _inputs(
         if isinstance(data[section][name], Load):
             found[name] = _settled(key, name, data[section][name], units)
         elif isinstance(written, schema.Varying):
-            load = varying(key, name, written, folder)
+            load = varying(key, name, written, folder, units)
             require_units_of_file(key, name, written, load, units)
             found[name] = _settled(key, name, load, units)
         else:
-            found[name] = values_of(key, name, written)
+            found[name] = values_of(key, name, written, units)
     return found
 
 

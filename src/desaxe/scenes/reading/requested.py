@@ -8,36 +8,41 @@ from ...loads.load import Load
 from ...mechanism.catalogue import of_design, quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import CENTRES, LENGTHS, STATUS, parts, sensitivity
+from ...mechanism.quantity_units import UnitSystem
 from ...scenes import schema
 from ..content import Check, Claim, Peak, PictureRequest
 from ..schema import SceneError, shown
 from .needs import OPTIONAL, needs_of, require, require_for_grid, require_known, single, with_others
 from .printed import read_percentage, read_printed
-from .values import Value, design_of, number_of, only_inputs, values_of
+from .values import Value, design_of, number_of, only_inputs, values_of, with_unit_in
 
 SENSITIVITIES = LENGTHS  # of a peak, those on which it depends, unless others are requested
 
 
-def checks_of(key: str, table: schema.CheckTable, inputs: Mapping[str, Value]) -> list[Check]:
+def checks_of(
+    key: str, table: schema.CheckTable, inputs: Mapping[str, Value], units: UnitSystem
+) -> list[Check]:
     """The printed values of a [[check]], each with the inputs that it needs."""
-    there = with_others(inputs, design_of(f"{key}.at", table.at))
+    there = with_others(inputs, design_of(f"{key}.at", table.at, units))
     checks = []
     for name, written in table.printed.items():
         place = f"{key}.printed.{name}"
         require_known(place, name, "omega" in there)
         needed = require(place, needs_of((name,), there), name, there)
-        printed = read_printed(place, written, table.digits, quantity(name, "omega" in there).unit)
+        printed = read_printed(
+            place, with_unit_in(units, name, written), table.digits, quantity(name, "omega" in there).unit
+        )
         checks.append(Check(table.title, table.source, name, printed, single(place, needed, there)))
     if not checks:
         raise SceneError(f"{key}.printed = {{}}: expected at least one printed value")
     return checks
 
 
-def peak_of(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> Peak:
+def peak_of(key: str, table: schema.PeakTable, inputs: Mapping[str, Value], units: UnitSystem) -> Peak:
     """The peak of a [[peak]], with its designs, baseline and claims."""
     name = table.quantity
     only_inputs(f"{key}.over", table.over)
-    over = {n: values_of(f"{key}.over.{n}", n, written) for n, written in table.over.items()}
+    over = {n: values_of(f"{key}.over.{n}", n, written, units) for n, written in table.over.items()}
     if "theta" in over:
         raise SceneError(f"{key}.over.theta: a peak is taken over theta; its range is {key}.theta")
     there = _completed(key, table, with_others(inputs, over))
@@ -58,17 +63,17 @@ def peak_of(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> P
     fixed = {n: value for n in ordered if isinstance(value := there[n], float)}
     loads = {n: value for n in ordered if isinstance(value := there[n], Load)}
     base = (
-        _other_design(f"{key}.baseline", table.baseline or {}, axes, fixed)
+        _other_design(f"{key}.baseline", table.baseline or {}, axes, fixed, units)
         if table.baseline is not None
         else {}
     )
     claims = tuple(
-        _claim(f"{key}.claim #{index}", claim, axes, fixed, bool(base))
+        _claim(f"{key}.claim #{index}", claim, axes, fixed, bool(base), units)
         for index, claim in enumerate(table.claim, 1)
     )
     wanted = _sensitivities(f"{key}.sensitivities", table, needed)
-    angles = _angles(key, table, inputs)
-    at_base = design_of(f"{key}.baseline", table.baseline or {})
+    angles = _angles(key, table, inputs, units)
+    at_base = design_of(f"{key}.baseline", table.baseline or {}, units)
     return Peak(table.title, name, table.kind, axes, fixed, angles, at_base, base, claims, wanted, loads)
 
 
@@ -111,10 +116,14 @@ def _slope(key: str, name: str, state: bool) -> str:
     return slope
 
 
-def _angles(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> tuple[float, float]:
+def _angles(
+    key: str, table: schema.PeakTable, inputs: Mapping[str, Value], units: UnitSystem
+) -> tuple[float, float]:
     """The range of theta: that of the peak, else that of the motion, else a cycle of the loads."""
     if table.theta is not None:
-        low, high = (number_of(f"{key}.theta #{i}", "theta", part) for i, part in enumerate(table.theta, 1))
+        low, high = (
+            number_of(f"{key}.theta #{i}", "theta", part, units) for i, part in enumerate(table.theta, 1)
+        )
         if low > high:
             raise SceneError(f"{key}.theta = {shown(list(table.theta))}: its lower end comes first")
         return low, high
@@ -125,10 +134,14 @@ def _angles(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> t
 
 
 def _other_design(
-    key: str, written: Mapping[str, float | str], axes: Mapping[str, Any], fixed: Mapping[str, float]
+    key: str,
+    written: Mapping[str, float | str],
+    axes: Mapping[str, Any],
+    fixed: Mapping[str, float],
+    units: UnitSystem,
 ) -> dict[str, float]:
     """All inputs of a design of which only the differences are written."""
-    design = {**fixed, **design_of(key, written)}
+    design = {**fixed, **design_of(key, written, units)}
     for name in written:
         if name not in axes and name not in fixed:
             raise SceneError(f"{key}.{name}: the peak does not depend on it")
@@ -139,25 +152,32 @@ def _other_design(
 
 
 def _claim(
-    key: str, claim: schema.ClaimTable, axes: Mapping[str, Any], fixed: Mapping[str, float], based: bool
+    key: str,
+    claim: schema.ClaimTable,
+    axes: Mapping[str, Any],
+    fixed: Mapping[str, float],
+    based: bool,
+    units: UnitSystem,
 ) -> Claim:
     if not based:
         raise SceneError(
             f"{key}.increase = {shown(claim.increase)}: an increase needs the peak's baseline = {{...}}"
         )
-    design = _other_design(f"{key}.at", claim.at, axes, fixed)
-    at = design_of(f"{key}.at", claim.at)
+    design = _other_design(f"{key}.at", claim.at, axes, fixed, units)
+    at = design_of(f"{key}.at", claim.at, units)
     return Claim(claim.source, at, design, read_percentage(f"{key}.increase", claim.increase))
 
 
-def picture_of(key: str, table: schema.PictureTable, inputs: Mapping[str, Value]) -> PictureRequest:
+def picture_of(
+    key: str, table: schema.PictureTable, inputs: Mapping[str, Value], units: UnitSystem
+) -> PictureRequest:
     """The curves of a [[picture]]."""
     name = table.quantity
     only_inputs(f"{key}.family", table.family)
     if len(table.family) > 1:
         raise SceneError(f"{key}.family: one input makes a family, got {', '.join(table.family)}")
-    family = {n: values_of(f"{key}.family.{n}", n, written) for n, written in table.family.items()}
-    there = with_others(with_others(inputs, design_of(f"{key}.at", table.at)), family)
+    family = {n: values_of(f"{key}.family.{n}", n, written, units) for n, written in table.family.items()}
+    there = with_others(with_others(inputs, design_of(f"{key}.at", table.at, units)), family)
     require_known(f"{key}.quantity", name, "omega" in there)
     needed = require_for_grid(f"{key}.quantity", (name,), there)
     if table.over not in INPUTS:
