@@ -2,6 +2,7 @@
 
 import codecs
 import math
+import random
 
 import numpy as np
 import pandas
@@ -66,6 +67,28 @@ def test_files_of_many_kinds_are_one_measurement(name, tmp_path):
     np.testing.assert_array_equal(data.measured["a_C"], FORCES)
 
 
+@pytest.mark.parametrize("seed", range(40))
+def test_any_mixture_of_dialects_is_read(seed, tmp_path):
+    chance = random.Random(seed)
+    separator, mark = chance.choice([(",", "."), *((between, mark) for between in ";\t " for mark in ".,")])
+    unit = chance.choice(["m", "mm", "cm"])
+    form = chance.choice(["{0} [{1}]", "{0}({1})", "{0} [{1}]\n({1})", "{0}\n{1}"])
+    numbers = [[chance.randint(-500, 500) / 8 for _ in range(3)] for _ in range(chance.randint(2, 30))]
+    quote = chance.choice(["", '"'])
+    rows = [[index, *row] for index, row in enumerate(numbers)]
+    lines = [separator.join(f"{quote}{x!r}{quote}".replace(".", mark) for x in row) for row in rows]
+    heads = form.format("Y", unit).split("\n"), form.format("out", "kN").split("\n")
+    width = 4 if separator == "," else 3
+    top = [separator.join([*pair, pair[1], ""][:width]) for pair in zip(*heads, strict=True)]
+    for remark in chance.sample(["# 12 strokes, 7 mm", "", separator * 2 if separator != " " else ""], 2):
+        lines.insert(chance.randint(0, len(lines)), remark)
+    end = chance.choice(["\n", "\r\n", "\r"])
+    text = end.join([*top, *lines]) + chance.choice(["", end])
+    read = dx.over_Y.read(written(tmp_path, text.encode(chance.choice(["utf-8", "utf-8-sig", "utf-16"]))))
+    places = [f"{index} {unit}" for index in range(len(rows))]
+    assert read == dx.over_Y(places, *([f"{row[k]} kN" for row in numbers] for k in (0, 1)))
+
+
 REFUSED = {
     "theta [deg];F [N]\n0;0\n90;-1.000,5\n": r"line 3, column 2 \(value\): '-1.000,5' .* one decimal mark",
     "theta [deg];F [N]\n0;0,5\n90;1.5\n": r"line 3, column 2 \(value\): '1.5' .* one decimal mark",
@@ -112,6 +135,11 @@ def test_an_empty_cell_stays_in_its_column(tmp_path):
     data = read_data(written(tmp_path, "theta,a_C,V_C\n0,1,\n,2,3\n1,,4\n"), False)
     np.testing.assert_array_equal(data.measured["a_C"], [1.0, np.nan, np.nan])
     np.testing.assert_array_equal(data.measured["V_C"], [np.nan, np.nan, 4.0])
+
+
+def test_a_line_of_units_may_be_shorter_than_the_heading(tmp_path):
+    data = read_data(written(tmp_path, "theta;a_C\n(deg)\n180;2\n"), False)
+    assert (data.at.tolist(), data.measured["a_C"].tolist()) == ([math.pi], [2.0])
 
 
 def test_units_of_one_way_are_those_of_the_other_unless_it_has_its_own(tmp_path):

@@ -30,7 +30,8 @@ _BATCH = 2_000  # rows at once, which a processor's cache holds
 _SAMPLE = 60  # lines by which the separator is known
 _SEPARATORS = (";", "\t", " ", ",")
 _NUMBER = re.compile(r"[-+]?(?:\d+(?:[.,]\d*)?|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
-_IN_BRACKETS = re.compile(r"\s*([\[(][^\])]*[\])])")
+_IN_BRACKETS = re.compile(r"[\[(][^\])]*[\])]")
+_BEFORE_BRACKETS = re.compile(r"(?<=[^\s\])])\s+(?=[\[(])")
 _QUOTED = re.compile(r'"[^"]*"')
 _SPEC = re.compile(r'"?sep=(.)"?\s*', re.IGNORECASE)  # the first line of some spreadsheets
 Array = NDArray[np.float64]
@@ -247,7 +248,8 @@ def _has_two_numbers(line: str, separator: str) -> bool:
 def _with_single_blanks(line: str) -> str:
     """A line of columns with blanks between them; those of a unit in brackets go: `T[N*m]`."""
     if "[" in line or "(" in line:
-        line = _IN_BRACKETS.sub(lambda match: "*".join(match[1].split()), line)
+        line = _IN_BRACKETS.sub(lambda match: "*".join(match[0].split()), line)
+        line = _BEFORE_BRACKETS.sub("", line)
     return " ".join(line.split()) + "\n"
 
 

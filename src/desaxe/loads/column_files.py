@@ -164,7 +164,8 @@ def named_columns(
     if texts and all(cells.number(text) is None for text in texts):  # a line of units
         cells.start += 1
         headings = {
-            k: Heading(name, unit or spelled(units[k]) or None) for k, (name, unit) in headings.items()
+            k: Heading(name, unit or spelled(units.get(k, "")) or None)
+            for k, (name, unit) in headings.items()
         }
     cells.require_width(row)
     values = cells.numbers({index: heading.name for index, heading in headings.items()})
