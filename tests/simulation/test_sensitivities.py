@@ -248,6 +248,37 @@ def test_the_work_where_a_torque_jumps_just_before_a_limit_angle():
         assert ours[f"work_wrt_{p}"] == pytest.approx(theirs[f"work_wrt_{p}"], rel=1e-5)
 
 
+Y_PLACES, ANGLES = [0.029, 0.036, 0.093, 0.095, 0.125], [0.672, 1.516, 1.616, 2.342, 3.009]
+UP_TO_A_LIMIT = {
+    "a jump at the start of the last panel": {
+        "AB": 0.113, "BC": 0.102, "m_crank": 0.154, "m_rod": 0.621, "m_slider": 2.211, "omega_start": 9.1,
+        "g_X": 5.0, "F_Y": dx.over_Y(Y_PLACES, [-4.648, 11.68, 33.429, -36.163, -32.829], kind="step"),
+        "F_X": dx.over_Y(Y_PLACES, [36.334, -10.53, 11.761, 3.478, -31.119], [-26.6, 25.4, 1.8, 14.3, -3.7]),
+        "torque": dx.over_omega([-20.0, 0.0, 20.0], [1.0, 0.5, -1.0]),
+    },
+    "the guide changes sides": {
+        "AB": 0.099, "BC": 0.096, "m_crank": 0.81, "m_rod": 1.74, "m_slider": 1.295, "omega_start": 7.5,
+        "F_Y": 4.0, "torque": dx.over_theta(ANGLES, [-1.464, -0.683, -1.616, -0.537, -0.159], "linear"),
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", UP_TO_A_LIMIT.values(), ids=UP_TO_A_LIMIT)
+def test_the_work_of_friction_up_to_a_limit_angle_is_the_same_at_every_rtol(case):
+    """Against central differences of two steps."""
+    call = {"t_end": 2.0, "ec": 0.048, "g_Y": -9.81, **case}
+
+    def difference(h):
+        more, less = (dx.simulate(**call, mu=mu, rtol=1e-12)["work"] for mu in (0.2 + h, 0.2 - h))
+        return (more - less) / (2.0 * h)
+
+    right = (4.0 * difference(1e-3) - difference(2e-3)) / 3.0
+    for rtol in (1e-8, 1e-9, 1e-10, 1e-12):
+        found = dx.simulate(**call, mu=0.2, rtol=rtol, wrt="mu")
+        assert found["status"] == 2
+        assert found["work_wrt_mu"] == pytest.approx(right, rel=3e-6), rtol
+
+
 def test_an_angle_that_is_only_touched_has_no_derivative():
     swing = {"torque": 0.0, "theta0": math.pi - 2.5, "rtol": 1e-12, **CRANK}
     free = dx.simulate(t_end=1.0, **swing)

@@ -92,7 +92,11 @@ def _of_load(own: Variations, begin: Along) -> Array:
     _, AB, _ = own.run.model.lengths
     limit, load = own.run.events[-1].theta, own.given["F_Y"]
     before, place = _shifts(own, begin)
-    forces = [_load(own, float(begin.theta[0]), float(place[0])), _load(own, limit, AB * cos(limit))]
+    own.cuts.hold(own.pieces[-1])  # at a jump the load is that behind it
+    forces = [
+        own.run.model.drive.F_Y(*(float(one[0]) for one in begin[:3])),
+        _at_limit(own, limit, AB * cos(limit)),
+    ]
     after = np.array([cos(limit) * (p == "AB") for p in own.wrt]) - AB * sin(limit) * own.cuts.limit(limit)
     zero = np.zeros(after.size)
     if isinstance(load, OverY) and load.centre:
@@ -110,8 +114,8 @@ def _of_load(own: Variations, begin: Along) -> Array:
     return result
 
 
-def _load(own: Variations, theta: float, Y: float) -> float:
-    """F_Y at an angle of the last panel, where the slider is at Y."""
+def _at_limit(own: Variations, theta: float, Y: float) -> float:
+    """F_Y at the limit angle, where the slider is at Y."""
     load = own.given["F_Y"]
     if not isinstance(load, OverY):
         return float(load.value(theta) if callable(load) else load)
