@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe.compiler.languages.numba.module import TO_COMPILE, emit_numba
 from desaxe.evaluation.axes import outer_of
 from desaxe.evaluation.points import points_of
 from desaxe.evaluation.under_loads.kernel import open_points
 from desaxe.loads.pieces import Place, piece_at
-from desaxe.runtime.kernels import source_of
+from desaxe.runtime.kernels import kernel_of
 
 MACHINE = {"AB": 0.1, "BC": 0.35, "omega0": 30.0, "m_slider": 2.0, "m_rod": 1.0}
 AXES = {"theta": np.linspace(0.0, 2.0 * np.pi, 61), "ec": np.linspace(-0.05, 0.05, 41)}
@@ -42,7 +43,9 @@ def test_a_key_has_the_kind_of_a_load_and_not_its_content():
 
 
 def test_the_search_stands_in_a_loop_of_its_own():
-    text = source_of(step_of(dx.over_Y([0.3, 0.4], [0.0, -100.0], [0.0, 10.0])).inside.key)
+    text = emit_numba(
+        kernel_of(step_of(dx.over_Y([0.3, 0.4], [0.0, -100.0], [0.0, 10.0])).inside.key), "", TO_COMPILE
+    )
     loops = text[text.index("def loops(") :]
     assert "lookup" not in loops
     assert loops.count("find_pieces(") == loops.count("look_up(") == 1
@@ -53,7 +56,7 @@ def test_what_a_kernel_of_numbers_alone_is_made_of_did_not_change():
     outer = outer_of(["T_in"], {**MACHINE, **AXES, "F_Y": -300.0}, 1, None, always=False)
     step = points_of(outer.names, outer, outer.dimensions, 1, "standard")
     assert step.inside is None
-    assert "look_up" not in source_of(step.key)
+    assert "look_up" not in emit_numba(kernel_of(step.key), "", TO_COMPILE)
 
 
 def test_designs_without_wide_margins_go_the_usual_way():

@@ -4,7 +4,7 @@ evaluate       numbers in, a float out; arrays in, arrays out
 arrays         inputs that broadcast, outputs and scratch
 loops          the loop that each input of a broadcast varies along
 grid           an outer product as a labelled dataset
-axes           its arguments, and axes joined to long loops
+axes           its arguments, checked
 chunks         how a grid, or a reduced axis, is cut
 plan           the steps of a grid, its blocks, its dataset
 points         a step: values of names by one kernel, loads included

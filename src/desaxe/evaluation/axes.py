@@ -1,11 +1,9 @@
-"""The arguments of a grid, checked, and its axes joined to loops that are long enough to vectorise."""
+"""The arguments of a grid, checked."""
 
 from collections.abc import Container, Iterable, Mapping, Sequence
-from math import prod
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-import numpy as np
 from numpy.typing import NDArray
 
 from ..loads.load import Load
@@ -16,13 +14,11 @@ from ..mechanism.names import LENGTHS, STATUS
 from ..mechanism.program import program_of
 from ..runtime.request import Request, check_common, several, standstill
 from .arrays import as_array
-from .loops import spread
 from .under_loads.loaded import split_axes
 
 Array = NDArray[Any]
 ALWAYS = ("status", "margin")
 ARGUMENTS = (*INPUTS, "branch", "accuracy", "threads", "out", "reduce", "chunks")  # of a grid, by name
-LONG_ENOUGH = 1_000  # points of the innermost loop: a shorter one costs as much to start as to run
 
 
 class Outer(NamedTuple):
@@ -106,33 +102,6 @@ def _axis(name: str, value: Any, names: Sequence[str]) -> Array:
     if array.ndim > 1:
         raise ValueError(f"{name}: a grid takes numbers and 1-d arrays, got the shape {array.shape}")
     return array
-
-
-def first_joined(order: Sequence[str], shape: Sequence[int]) -> int:
-    """The first of the last axes that are joined to one, long enough to vectorise.
-
-    The crank angle is never joined: its sine and cosine must not be computed again for every design.
-    """
-    first = len(order) - 1
-    if order[first] != "theta":
-        while first > 0 and prod(shape[first:]) < LONG_ENOUGH and order[first - 1] != "theta":
-            first -= 1
-    return first
-
-
-def join_from(
-    first: int, columns: dict[str, Array], axis_of: dict[str, int], shape: tuple[int, ...]
-) -> tuple[int, ...]:
-    """Join the axes from `first` on to one; the lengths of the axes then.
-
-    Effect: `columns` along the joined axes have a value for each point of them, and `axis_of` follows.
-    """
-    rest = shape[first:]
-    for name, axis in axis_of.items() if len(rest) > 1 else ():
-        if axis >= first:
-            columns[name] = np.ascontiguousarray(spread(columns[name], axis - first, rest))
-            axis_of[name] = first
-    return (*shape[:first], prod(rest))
 
 
 def require_inputs(wanted: Request, axes: Container[str]) -> None:

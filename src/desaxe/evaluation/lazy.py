@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..support.extras import needed
-from .chunks import chunk_lengths, longest
+from .chunks import chunk_lengths
 from .dask_blocks import outputs_of_blocks
 from .plan import Plan, Step, computed
 
@@ -26,7 +26,7 @@ def lazy_values(plan: Plan, chunks: Any, threads: int | None) -> dict[str, Any]:
 
     lengths = chunk_lengths(chunks, plan.sizes, max(1, AUTO // max(plan.behind, 1)))
     axes, found = plan.outer.axes, dict[str, Any]()
-    for step in plan.cut(longest(lengths)).all:
+    for step in plan.all:
         task = StepTask(step, threads or 1)
         token = tokenize(task.identity, *(axes[name] for name in step.axes), lengths)
         columns = []

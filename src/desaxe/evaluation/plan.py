@@ -2,7 +2,7 @@
 
     plan = plan_of(outer, branch, accuracy, reduce)
     plan.dataset(plan.values(threads))               # `grid`: one block
-    for block in plan.cut(lengths).blocks(lengths):  # chunks of Dask, of a store, of a search
+    for block in plan.blocks(lengths):  # chunks of Dask, of a store, of a search
         for part in block.parts:
             computed(part.step, block.values, threads)
 
@@ -59,9 +59,6 @@ class Step(Protocol):
     @property
     def identity(self) -> str:
         """A text that tells the step from all others."""
-
-    def cut(self, lengths: Mapping[str, int]) -> "Step":
-        """Prepare the step for blocks of these lengths."""
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The outputs of a block by name, from the values along each of its `axes`."""
@@ -155,13 +152,6 @@ class Plan(NamedTuple):
             for output in step.outputs.values()
         )
 
-    def cut(self, lengths: Mapping[str, int]) -> "Plan":
-        """Prepare all steps for blocks of these lengths; dimensions that are not named are whole."""
-        whole = {name: self.outer.axes[name].size for name in self.outer.dimensions}
-        whole |= lengths
-        steps, beside = (tuple(step.cut(whole) for step in some) for some in (self.steps, self.beside))
-        return self._replace(steps=steps, beside=beside)
-
     def blocks(self, lengths: Mapping[str, int]) -> Iterator[Block]:
         """All blocks in order; a step of fewer dimensions is a part of the first block that has its place."""
         sizes, axes = self.sizes, self.outer.axes
@@ -201,7 +191,7 @@ class Plan(NamedTuple):
             for step in self.all
             for name, output in step.outputs.items()
         }
-        for block in self.cut(lengths).blocks(lengths):
+        for block in self.blocks(lengths):
             before()
             for part in block.parts:
                 for name, array in computed(part.step, block.values, threads).items():

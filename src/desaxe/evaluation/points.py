@@ -22,9 +22,9 @@ from ..runtime.request import Request, request
 from ..runtime.threads import run_in_blocks
 from ..runtime.tiers import COMPILED, tier_of
 from .arrays import copied_back, dtype_of, fill, outputs_for, scratch_for
-from .axes import Outer, first_joined, join_from, require_inputs
+from .axes import Outer, require_inputs
 from .labels import Output, attributes
-from .loops import Loops
+from .loops import Loops, spread
 from .under_loads.kernel import UnderLoads, in_kernel
 from .under_loads.loaded import MOTION, plan_at, totals_at
 
@@ -38,7 +38,6 @@ class Points(NamedTuple):
     wanted   what the kernel gives, in the order of its outputs: the names, and their slopes by loads
     numbers  the inputs that are numbers here
     key      the kernel of all blocks
-    first    the first of the last dimensions that the kernel runs over as one
     branch   the assembly
     loads    the plan of loads that vary with the motion; derivatives are total ones then
     motion   the values of the motion that these loads follow
@@ -49,7 +48,6 @@ class Points(NamedTuple):
     wanted: Request
     numbers: tuple[tuple[str, float], ...]
     key: KernelKey
-    first: int
     branch: int
     loads: LoadPlan | None = None
     motion: "Points | None" = None
@@ -81,21 +79,6 @@ class Points(NamedTuple):
         """A text that tells the step from all others, by what its loads are too."""
         loads = () if self.loads is None else self.loads.loads.values()
         return " ".join([repr(self), *(load.identity for load in loads)])
-
-    def cut(self, lengths: Mapping[str, int]) -> "Points":
-        """Prepare the step for blocks of these lengths: short axes are joined to one long loop."""
-        inside = None if self.inside is None else self.inside.cut(lengths)
-        if inside != self.inside:
-            return self._replace(inside=inside).cut(lengths)
-        first = 0
-        if not self._flat:
-            first = first_joined(self._order, tuple(lengths[name] for name in self.dims) or (1,))
-        motion = None if self.motion is None else self.motion.cut(lengths)
-        if first == self.first:
-            return self if motion is None else self._replace(motion=motion)
-        axis_of = tuple((name, min(self._place(name), first)) for name, _ in self.key.axis_of)
-        key = self.key._replace(axis_of=axis_of, axes=first + 1)
-        return self._replace(key=key, first=first, motion=motion)
 
     def compute(
         self, values: Mapping[str, Array], threads: int | None = 1, out: Any = None
@@ -132,11 +115,6 @@ class Points(NamedTuple):
         loads = {} if self.loads is None else self.loads.loads
         return bool(self.dims) and any(isinstance(load, OverY) for load in loads.values())
 
-    @property
-    def _order(self) -> list[str]:
-        """The axes of the loops: at least one, so that a grid of numbers alone goes the same way."""
-        return list(self.dims) or [""]
-
     def _place(self, name: str) -> int:
         """The axis along which an input varies, a load that varies with the motion along that of theta."""
         loads = {} if self.loads is None else self.loads.loads
@@ -165,15 +143,17 @@ class Points(NamedTuple):
             else:
                 columns[name] = np.ascontiguousarray(value).reshape(-1)
         places = {name: self._place(name) for name in columns}
-        sizes = join_from(self.first, columns, places, shape or (1,))
-        loops = Loops(sizes, columns | whole, places | dict.fromkeys(whole, 0))
+        sizes = shape or (1,)
+        if self._flat:
+            columns = {name: spread(column, places[name], shape) for name, column in columns.items()} | whole
+            sizes, places = (prod(shape),), dict.fromkeys(columns, 0)
+        loops = Loops(sizes, columns, places)
         fill(self.wanted, scalars, loops, outs, threads, bool(loads), self.key)
 
     def fill_inside(self, values: Mapping[str, Array], outs: Sequence[Array], threads: int | None) -> None:
         """Fill the outputs by the kernel that has the loads in it; what rounding leaves open, exactly."""
         assert self.inside is not None
-        given, sizes = self.inside.joined(values)
-        run_in_blocks(self.inside.key, given, [out.reshape(sizes) for out in outs], threads)
+        run_in_blocks(self.inside.key, self.inside.arguments(values), outs, threads)
         for region, found in self.inside.settled(values):
             for out, new in zip(outs, found, strict=True):
                 out[region] = new
@@ -253,6 +233,7 @@ def _keyed(
             columns[name] = outer.axes[along[places[name]]]  # of its length
     scalars = {name: value for name, value in numbers.items() if name in inputs}
     key = key_of(wanted, scalars, columns, places, max(1, len(along)))
-    last = key.axes - 1
-    step = Points(tuple(along), wanted, tuple(numbers.items()), key, last, int(branch), plan, motion)
-    return step.cut({name: outer.axes[name].size for name in along})
+    step = Points(tuple(along), wanted, tuple(numbers.items()), key, int(branch), plan, motion)
+    if not step._flat:
+        return step
+    return step._replace(key=key._replace(axis_of=tuple((name, 0) for name, _ in key.axis_of), axes=1))

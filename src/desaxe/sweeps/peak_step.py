@@ -67,10 +67,6 @@ class PeakStep(NamedTuple):
             for output, dtype in self.block.dtypes.items()
         }
 
-    def cut(self, lengths: Mapping[str, int]) -> "PeakStep":
-        """Return the step itself: a search goes design by design."""
-        return self
-
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The variables of a block, from the values along each of its dimensions."""
         grids = np.meshgrid(*(values[name] for name in self.dims), indexing="ij", sparse=True)

@@ -54,7 +54,7 @@ class Sweep(NamedTuple):
 
     def blocks(self) -> Iterator[Block]:
         """The chunks of the sweep, with what is computed in each."""
-        return self.plan.cut(self.layout.chunk).blocks(self.layout.chunk)
+        return self.plan.blocks(self.layout.chunk)
 
 
 def sweep_of(asked: SweepRequest) -> Sweep:

@@ -83,7 +83,7 @@ def _fill(sweep: Sweep, root: Path, way: RunOptions) -> None:
 def _announcement(sweep: Sweep, root: Path, cores: int) -> str:
     variables = len(sweep.template.data_vars)
     plan = sweep.plan
-    seconds = seconds_of(plan.cut(sweep.layout.chunk)) / cores
+    seconds = seconds_of(plan) / cores
     seconds += CHUNK * sweep.layout.chunks * variables
     return announcement(plan.points, variables, plan.bytes, sweep.layout, seconds, free_at(root))
 

@@ -52,10 +52,6 @@ class AtPlace(NamedTuple):
             self.at.variable: Output(FLOAT, {**attributes(name, state), "long_name": words, "quantity": name})
         }
 
-    def cut(self, lengths: Mapping[str, int]) -> "AtPlace":
-        """Prepare the step for blocks of these lengths."""
-        return self._replace(of=self.of.cut({**lengths, self.axis: 1}))
-
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The output of a block, from the values along each of its `axes`."""
         columns = {**values, self.axis: np.array([self.at.place])}
@@ -93,10 +89,6 @@ class OfDesign(NamedTuple):
         return found | {
             f"{name}_wrt_{p}": Output(FLOAT, {"long_name": f"{name}_wrt_{p}"}) for p in self.slopes
         }
-
-    def cut(self, lengths: Mapping[str, int]) -> "OfDesign":
-        """Return the step itself: a function goes design by design."""
-        return self
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The outputs of a block by name, from the values along each of its dimensions."""

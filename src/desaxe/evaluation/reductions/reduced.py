@@ -107,10 +107,6 @@ class Reduced(NamedTuple):
         """True if the result of a chain is a sample over theta under loads that may jump."""
         return self.of.loads is not None and "theta" in extremes_at_end(chain)
 
-    def cut(self, lengths: Mapping[str, int]) -> "Reduced":
-        """Prepare the step for blocks of these lengths."""
-        return self._replace(of=self.of.cut(lengths))
-
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The outputs of a block by name, from the values along each of its `axes`."""
         fields, counts = self._chained(values, threads)
@@ -183,12 +179,11 @@ class Reduced(NamedTuple):
         lengths = longest(chunk_lengths("auto", sizes, max(1, BLOCK // max(1, length))))
         regions = [slices_of(index, sizes, lengths) for index in blocks_of(sizes, lengths)]
         found = {key: _empty(rest, sizes, along) for key in kinds}
-        of = self.of.cut({**lengths, along: length})
 
         def part(start: int, stop: int) -> None:
             for region in regions[start:stop]:
                 block = {**values, **{name: values[name][one] for name, one in region.items()}}
-                fields = {name: field_of(dims, array) for name, array in of.compute(block, 1).items()}
+                fields = {name: field_of(dims, array) for name, array in self.of.compute(block, 1).items()}
                 for name, kind in kinds:
                     one = folded(fields[name], [along], kind, values)
                     found[name, kind].fill(tuple(region.values()), one)

@@ -23,7 +23,7 @@ from ...runtime.kernels import KernelKey, key_of, plain_of
 from ...runtime.request import Request
 from ...runtime.threads import run_in_blocks
 from ...runtime.tiers import forced_tier
-from ..axes import Outer, first_joined, join_from
+from ..axes import Outer
 from .request import LEAST, are_extreme_under, table_arrays, under_loads
 
 Array = NDArray[Any]
@@ -42,7 +42,6 @@ class UnderLoads(NamedTuple):
     wanted   the request, whose variant names the loads
     numbers  the inputs that are numbers here
     key      the kernel of all blocks
-    first    the first of the last dimensions that the kernel runs over as one
     branch   the assembly
     plan     that of the loads
     """
@@ -51,27 +50,8 @@ class UnderLoads(NamedTuple):
     wanted: Request
     numbers: tuple[tuple[str, float], ...]
     key: KernelKey
-    first: int
     branch: int
     plan: LoadPlan
-
-    def cut(self, lengths: Mapping[str, int]) -> "UnderLoads":
-        """Prepare for blocks of these lengths: short axes are joined to one long loop."""
-        first = first_joined(list(self.dims), tuple(lengths[name] for name in self.dims))
-        axis_of = tuple((name, min(self._place(name), first)) for name, _ in self.key.axis_of)
-        return self._replace(key=self.key._replace(axis_of=axis_of, axes=first + 1), first=first)
-
-    def _place(self, name: str) -> int:
-        """The dimension along which an input varies; a load over theta, or its derivative, along theta."""
-        return self.dims.index(name if name in self.dims else "theta")
-
-    def joined(self, values: Mapping[str, Array]) -> tuple[dict[str, Any], tuple[int, ...]]:
-        """The arguments of the kernel for a block, and the lengths of its loops."""
-        given = self.arguments(values)
-        columns = {name: given[name] for name, _ in self.key.axis_of}
-        places = {name: self._place(name) for name in columns}
-        sizes = join_from(self.first, columns, places, tuple(values[name].size for name in self.dims))
-        return {**given, **columns}, sizes
 
     def arguments(self, values: Mapping[str, Array]) -> dict[str, Any]:
         """The numbers, columns and tables of a block by name."""
@@ -114,11 +94,9 @@ class UnderLoads(NamedTuple):
         sizes = {name: values[name].size for name in self.dims if name in (index or {}) or name in SPEEDS}
         for point in each_point(index, sizes):
             block = {n: own[point[n] : point[n] + 1] if n in point else own for n, own in values.items()}
-            given, lengths = self.joined(block)
-            given |= self._held(block)
             shape = tuple(block[name].size for name in self.dims)
             outs = [np.empty(shape, np.int8 if n in STATUSES else np.float64) for n in self.key.names]
-            run_in_blocks(self.key, given, [out.reshape(lengths) for out in outs], 1)
+            run_in_blocks(self.key, self.arguments(block) | self._held(block), outs, 1)
             yield region_of(point, self.dims), outs
 
     def _held(self, block: Mapping[str, Array]) -> dict[str, Array]:
@@ -164,8 +142,7 @@ def in_kernel(
         return None
     alone = [name for name in ("theta", *LENGTHS) if name not in along]
     numbers |= {name: float(axes[name].reshape(-1)[0]) for name in alone}
-    step = UnderLoads(tuple(along), wanted, tuple(numbers.items()), key, len(along) - 1, branch, plan)
-    return step.cut({name: axes[name].size for name in along})
+    return UnderLoads(tuple(along), wanted, tuple(numbers.items()), key, branch, plan)
 
 
 def open_points(

@@ -200,13 +200,13 @@ def _grid(content: Content, plan: Plan) -> dict[str, Any]:
 
 
 def _kernel_of(plan: Plan) -> GridKernel:
-    """The kernel of a plan, with its loops: axes joined to one have a name together."""
+    """The kernel of a plan, with its loops: where one goes over all points, it has the names of all axes."""
     points = points_of(plan)
     of = points.inside or points
-    order, first = list(of.dims) or [""], of.first
-    sizes = [plan.outer.axes[name].size if name else 1 for name in order]
-    axes = (*order[:first], " x ".join(order[first:]))
-    return GridKernel(of.wanted, axes, (*sizes[:first], prod(sizes[first:])), of.key)
+    sizes = tuple(plan.outer.axes[name].size for name in of.dims) or (1,)
+    if of.key.axes < len(of.dims) or not of.dims:
+        return GridKernel(of.wanted, (" x ".join(of.dims),), (prod(sizes),), of.key)
+    return GridKernel(of.wanted, of.dims, sizes, of.key)
 
 
 def _reduction(plan: Plan) -> dict[str, Any] | None:

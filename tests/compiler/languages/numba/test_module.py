@@ -12,14 +12,14 @@ import pytest
 from numba import njit
 
 from desaxe.compiler.kernel import hoist
-from desaxe.compiler.languages.numba.module import emit_numba
+from desaxe.compiler.languages.numba.module import TO_COMPILE, emit_numba
 from desaxe.compiler.passes.guard import guard_inputs
 from desaxe.compiler.passes.trigonometry import expand_trigonometry
 from desaxe.compiler.program import Line, Program
 from desaxe.mechanism.constants import constants
 from desaxe.mechanism.inputs import INPUTS, LEAST
 from desaxe.mechanism.program import Variant
-from desaxe.runtime.kernels import KernelKey, source_of
+from desaxe.runtime.kernels import KernelKey, kernel_of
 from tests.compiler.coverage_set import NAMES, POINTS, coverage
 from tests.compiler.languages.modules import wrong_names
 from tests.compiler.programs import committed, in_doubles, program_of_nested
@@ -201,7 +201,7 @@ def test_both_forms_of_a_kernel_run_several_points_at_once():
     counts = []
     for form in (Variant(wide_margins=True), Variant()):
         scope = {}
-        exec(source_of(key._replace(form=form)), scope)
+        exec(emit_numba(kernel_of(key._replace(form=form)), "", TO_COMPILE), scope)
         compiled = njit(scope["signature"], error_model="numpy")(scope["function"])
         (text,) = compiled.inspect_asm().values()
         counts.append(len(re.findall(PACKED_ROOT, text)))
@@ -215,7 +215,11 @@ WIDE = 'WIDE = "+avx512f" in codegen.get_host_cpu_features()'
 def with_vectors(wide):
     """A kernel of columns for wide or narrow vectors, and the names of its arguments."""
     axes = tuple((name, 0) for name in ("AB", "BC", "ec", "theta"))
-    text = source_of(KernelKey(("V_C", "a_C"), Variant(), (("alpha", 0.0), ("branch", 1.0)), axes, 1))
+    text = emit_numba(
+        kernel_of(KernelKey(("V_C", "a_C"), Variant(), (("alpha", 0.0), ("branch", 1.0)), axes, 1)),
+        "",
+        TO_COMPILE,
+    )
     assert text.count(WIDE) == 1
     scope = {}
     exec(text.replace(WIDE, f"WIDE = {wide}"), scope)
