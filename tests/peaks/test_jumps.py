@@ -6,6 +6,7 @@ from math import inf, nextafter, pi
 import mpmath
 import numpy as np
 import pytest
+from mpmath import mp
 
 import desaxe as dx
 from desaxe.loads.exact import Slider
@@ -413,3 +414,66 @@ def test_curves_reach_the_peak():
     assert np.abs(machine.plot("T_in")[0].get_ydata()).max() == pytest.approx(1e3 * press_peak(0.3))
     course = dx.drive(**PRESS, **LOAD, BC=0.3).course
     assert np.abs(course["T_in"]).max() == pytest.approx(press_peak(0.3))
+
+
+# Expression, kind of its extreme value, what is 0 there and the limit, in the names of `_motion`.
+OF_CONDITIONS = {
+    "jump of a torque": ("where(T_in > t0, power_in, -power_in)", "min", "T - 30", "-T * w"),
+    "jump of a speed": ("where(a_C > a0, V_C, 0 * V_C)", "max", "A - 500", "V"),
+    "jump within a jump": ("where(a_C > a0, where(T_in < t0, V_C / 2, V_C), 0 * V_C)", "max", "A - 500", "V"),
+    "kink of magnitudes": ("max(abs(V_C), abs(2 * V_B_Y))", "min", "V*V - 4*B*B", "sqrt(V * V)"),
+}
+
+
+def _motion(theta, ec, AB, BC, omega0, m_slider):
+    """T_in, V_C, a_C and V_B_Y of a slider alone, by its free body, with 40 digits."""
+    u, bend = ec + AB * mp.sin(theta), -AB * mp.sin(theta)
+    slope, S = AB * mp.cos(theta), mp.sqrt(BC**2 - u**2)
+    Y1 = bend - u * slope / S
+    Y2 = -slope - (slope**2 + u * bend) / S - (u * slope) ** 2 / S**3
+    V, A = omega0 * Y1, omega0**2 * Y2
+    return {"T": m_slider * A * Y1, "V": V, "A": A, "B": omega0 * bend, "w": omega0, "sqrt": mp.sqrt}
+
+
+@pytest.mark.parametrize("name", OF_CONDITIONS)
+def test_extremes_where_a_condition_of_a_user_defined_quantity_changes(name):
+    expression, kind, condition, limit = OF_CONDITIONS[name]
+    constants = {"t0": "30 N m", "a0": "500 m/s^2"}
+    constants = {n: v for n, v in constants.items() if n in expression}
+    design = {"ec": 0.02, "AB": 0.125, "BC": 0.35, "omega0": 150.0, "m_slider": 0.8}
+    dx.define("rig", expression, **constants)
+    try:
+        found = dx.peak("rig", kind=kind, **design)
+        both = dx.peak("rig", kind=kind, **{**design, "ec": [0.03, 0.02]})
+        theta = np.linspace(0.0, 2 * np.pi, 200_001)
+        sampled = dx.evaluate("rig", theta=theta, **design)
+        sides = dx.evaluate("rig", theta=found["theta"] + np.array([-1e-7, 1e-7]), **design)
+    finally:
+        dx.undefine("rig")
+    with mp.workdps(40):
+
+        def at(**inputs):
+            inputs = {n: mp.mpf(v) for n, v in {**design, **inputs}.items()}
+            root = mp.findroot(lambda t: eval(condition, _motion(t, **inputs)), mp.mpf(found["theta"]))
+            return root, eval(limit, _motion(root, **inputs))
+
+        angle, value = at()
+        step = mp.mpf(10) ** -15
+        slopes = {
+            p: (at(**{p: design[p] + step})[1] - at(**{p: design[p] - step})[1]) / (2 * step) for p in design
+        }
+        assert abs(found["theta"] - angle) < 1e-14
+        assert found["value"] == pytest.approx(float(value), rel=1e-13)
+        for p, slope in slopes.items():
+            scale = float(abs(value)) / design[p]
+            assert found["gradient"].get(p, 0.0) == pytest.approx(
+                float(slope), rel=1e-10, abs=1e-11 * scale
+            ), p
+    assert found["status"] == 0
+    assert found["value"] <= sampled.min() if kind == "min" else found["value"] >= sampled.max()
+    if name.startswith("jump"):
+        assert sides[(found["side"] + 1) // 2] == pytest.approx(found["value"], rel=1e-4)
+        assert sides[(1 - found["side"]) // 2] != pytest.approx(found["value"], rel=0.1)
+    else:
+        assert found["side"] == 0
+    assert both["value"][1] == found["value"]

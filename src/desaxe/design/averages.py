@@ -52,7 +52,7 @@ def _averages(kind: str, names: list[str], cycle: Cycle, parameters: Mapping[str
     power = 1 if kind == "mean" else 2
     after, before = (end**power for end in np.moveaxis(panels.ends(value), -1, 0))
     jump = before - np.roll(after, -1, axis=-1)
-    moves = cycle.moves(panels.edges[:, 1:])
+    moves = cycle.moves(names[:1], panels.edges[:, 1:])
     mean = panels.integral(value**power) / cycle.angle
     sums = [panels.integral(power * value ** (power - 1) * slope) for slope in slopes]
     moved = [(jump * moves[p]).sum(-1) if p in moves else 0.0 for p in parameters]

@@ -1,8 +1,9 @@
-"""The loads of designs over the crank angle: their kinks and jumps, and the nodes that a search needs."""
+"""Loads and conditions of designs over the crank angle: kinks, jumps, and the nodes that a search needs."""
 
 from collections.abc import Mapping
+from functools import partial
 from math import inf
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +12,12 @@ from ..evaluation.under_loads.arcs import Arcs, arcs_of, meeting_in_turn
 from ..loads.angles import meeting_and_bent
 from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.closed.angles import dead_centres, repeated
+from ..support.roots import sign_changes
 from .nodes import Array
-from .special import SearchedDesigns
+from .special import AT_KINK, SearchedDesigns, own_nodes
 
-# What keeps a kink where it is: the angle, a position, a dead centre, the distance from one.
-FIXED, CROSSING, TURNING, FROM_OUTER, FROM_INNER = range(5)
+# What keeps a kink where it is: the angle, a position, a dead centre, the distance from one, conditions.
+FIXED, CROSSING, TURNING, FROM_OUTER, FROM_INNER, CONDITION = range(6)
 KIND_OF = {"": CROSSING, "Y_outer": FROM_OUTER, "Y_inner": FROM_INNER}
 BESIDE = 16.0  # last bits of an angle: so near to a jump is next to it
 ROUNDED = 64.0  # last bits of an angle: so near to a dead centre rounding may take the other side's friction
@@ -39,7 +41,7 @@ class Course(NamedTuple):
     kinks  where a load is not smooth; every dead centre under a load over Y
     jumps  the first angle after each jump
     arcs   those of the loads over Y that jump
-    turns  the dead centres, at which friction jumps; those of `jumps` first, which are exact
+    turns  the dead centres, at which friction jumps; those of `jumps` first, which are exact; conditions
     """
 
     nodes: Array
@@ -64,7 +66,7 @@ class Course(NamedTuple):
 
 
 def course_of(designs: SearchedDesigns) -> Course:
-    """The loads of designs over their range of angles."""
+    """The loads and conditions of designs over their range of angles."""
     low, high = designs.theta
     over_Y = {name: load for name, load in designs.loads.items() if isinstance(load, OverY)}
     lengths = designs.lengths if over_Y or designs.rubs else []
@@ -78,13 +80,17 @@ def course_of(designs: SearchedDesigns) -> Course:
         else _over_theta(load, designs)
         for name, load in designs.loads.items()
     ]
+    known = [*(angles for part in parts for angles, _ in (*part.kinks, *part.jumps)), turning]
+    conditions = _conditions(designs, np.concatenate(known, axis=1)) if designs.conditions else []
+    parts += conditions
     nodes = np.concatenate([np.full((designs.size, 1), low), *(part.nodes for part in parts)], axis=1)
     nodes = np.where(np.isfinite(nodes), np.clip(nodes, low, high), low)
     some = (nodes != low).any(axis=0)  # of four turns that a range may touch, most are empty
     some[0] = True
     nodes = nodes[:, some]
     kinks, jumps = (_marks([mark for part in parts for mark in part[k]], designs.size) for k in (1, 2))
-    return Course(nodes, kinks, jumps, arcs, np.append(jumps.of(TURNING), turning, axis=1))
+    turns = [jumps.of(TURNING), turning, *(angles for part in conditions for angles, _ in part.jumps)]
+    return Course(nodes, kinks, jumps, arcs, np.concatenate(turns, axis=1))
 
 
 class _Part(NamedTuple):
@@ -93,6 +99,27 @@ class _Part(NamedTuple):
     nodes: Array
     kinks: list[tuple[Array, int]]
     jumps: list[tuple[Array, int]]
+
+
+def _conditions(designs: SearchedDesigns, known: Array) -> list[_Part]:
+    """The angles at which conditions change their sign, but for those at which a load or friction jumps."""
+    start = np.full((designs.size, 1), designs.theta[0])
+    nodes = own_nodes(designs)[0]
+    edges = np.where(np.isfinite(known), np.clip(known, *designs.theta), start)
+    room = ROUNDED * np.spacing(1.0 + np.abs(edges))
+    nodes = np.sort(np.concatenate([nodes, edges - room, edges + room], axis=1), axis=1)
+    parts = []
+    for number, name in enumerate(designs.conditions):
+        angles = sign_changes(partial(_value, designs, name), nodes)
+        at_load = (np.abs(angles[:, :, None] - known[:, None]) <= AT_KINK).any(axis=2)
+        angles = np.where(at_load, np.nan, angles)
+        marks = [(angles, CONDITION + number)]
+        parts.append(_Part(np.append(angles, np.nextafter(angles, -inf), axis=1), marks, marks))
+    return parts
+
+
+def _value(designs: SearchedDesigns, name: str, rows: NDArray[np.intp], theta: Array) -> Any:
+    return designs.values((name,), rows, theta)[name]
 
 
 def _over_theta(load: Load, designs: SearchedDesigns) -> _Part:

@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
+from ..definitions.conditions import conditions_of
 from ..loads.load import Load
 from ..mechanism.catalogue import has, of_design, quantity
 from ..mechanism.constants import constants
 from ..mechanism.names import LENGTHS, STATUS, sensitivity
-from ..mechanism.own import Register, register
+from ..mechanism.own import Register, register, using
 from ..mechanism.own_lines import has_kinks
 from ..runtime.accuracy import accuracy_of
 from ..runtime.interpreted import are_good
@@ -147,12 +148,14 @@ def peaks_of_designs(sought: Sought, search: Search, columns: dict[str, Array]) 
     plan = sought.plan
     kinks = "mu" in plan.parameters or has_kinks(plan.wanted.form.own)
     loads = with_slopes(sought.loads, *sought.ends) if sought.loads else {}
+    conditions = conditions_of(plan.wanted.form.own)
+    names = tuple(condition.name for condition in conditions)
     checked = _checked(
-        SearchedDesigns(columns, sought.branch, sought.ends, kinks, loads, plan.wanted.accuracy)
+        SearchedDesigns(columns, sought.branch, sought.ends, kinks, loads, plan.wanted.accuracy, names)
     )
     size = checked.designs.size
     usual = search if loads else _in_form(search, checked)
-    with progress_bar(unit="designs") if size > LARGE else nullcontext() as watch:
+    with using(conditions), progress_bar(unit="designs") if size > LARGE else nullcontext() as watch:
         return _all(Work(sought, search, usual, Portions(size, f"peaks of {plan.name}", watch)), checked)
 
 
@@ -193,7 +196,8 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     status = np.zeros(designs.size, np.int8)
     number = KINDS.index(kind)
     rows = np.flatnonzero(~own_nodes)
-    loaded = ValuesUnderLoads(name, search, designs, course_of(designs), told) if designs.loads else None
+    marked = designs.loads or designs.conditions
+    loaded = ValuesUnderLoads(name, search, designs, course_of(designs), told) if marked else None
     under = _compiled_under(loaded, checked, rows.size) if rows.size and loaded is not None else None
     if under is not None and loaded is not None:
         tables = tables_under(under, designs, loaded.course)

@@ -10,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..mechanism.catalogue import has
 from ..mechanism.names import LENGTHS, sensitivity
-from .course import BESIDE, CROSSING, FROM_INNER, FROM_OUTER, ROUNDED, TURNING
+from .course import BESIDE, CONDITION, CROSSING, FIXED, FROM_INNER, FROM_OUTER, ROUNDED, TURNING
 from .loaded import Rows, ValuesUnderLoads
 from .nodes import Array
 from .special import AT_KINK
@@ -19,7 +20,7 @@ from .special import AT_KINK
 EQUAL = 2.0**-40  # of a value: limits that differ by less are equal
 APART = 1e-9  # of a value: what friction of the other side changes is more
 # What keeps its value at a kink that moves with the lengths: a quantity, or the difference of two.
-KEPT = {
+KEPT: dict[int, tuple[str, ...]] = {
     CROSSING: ("Y",),
     TURNING: ("Y_wrt_theta",),
     FROM_OUTER: ("Y", "Y_outer"),
@@ -53,12 +54,12 @@ def at_jumps(
         rows, kinds = jumps.rows, jumps.kinds
         side[rows] = jumps.sides
         _complete(values, kind, jumps, theta, out)
-        for what in KEPT:
+        for what in np.unique(kinds).tolist():
             _move(values, kind, what, rows[kinds == what], theta, out)
     angles, kinds = values.course.kinks
     near = np.abs(angles - theta[:, None]) <= AT_KINK
     near[side != 0] = False
-    for what in KEPT if near.any() else ():
+    for what in np.unique(kinds[near.any(axis=0)]).tolist():
         _move(values, kind, what, np.flatnonzero(near[:, kinds == what].any(axis=1)), theta, out)
     return side
 
@@ -70,7 +71,7 @@ def _complete(values: ValuesUnderLoads, kind: int, jumps: Jumps, theta: Array, o
     """
     rows, before = jumps.rows, theta[jumps.rows]
     there = np.clip(_nearest(values, jumps), *values.designs.theta)
-    turning = (jumps.kinds == TURNING) & values.designs.rubs
+    turning = _turns_round(jumps.kinds) & values.designs.rubs
     if turning.any():
         there[turning] = _certain(values, rows[turning], there[turning], jumps.sides[turning])
     # There one Program is certain of the side; another one may round to the other side, or to none.
@@ -81,7 +82,7 @@ def _complete(values: ValuesUnderLoads, kind: int, jumps: Jumps, theta: Array, o
     if far.any():
         rows = rows[far]
         new = np.array(values.at(len(out), rows, aside[far], values.course.pieces(rows, before[far])))
-        out[:2, rows] = new[:2]
+        out[0, rows], out[1, rows] = new[0] + new[1] * (there - aside)[far], new[1]
         out[2:, rows] = np.where((kind == 0) & (new[0] < 0.0), -new[2:], new[2:])
 
 
@@ -92,7 +93,7 @@ def _jumps(values: ValuesUnderLoads, theta: Array) -> Jumps | None:
         away = np.abs(theta[:, None] - angles)
         room = BESIDE * np.spacing(np.maximum(np.abs(theta[:, None]), np.abs(angles)))
         if values.designs.rubs:  # there `Course.aside` makes more angles equal
-            room[:, kinds == TURNING] = 1.5 * ROUNDED * np.spacing(1.0 + np.abs(theta[:, None]))
+            room[:, _turns_round(kinds)] = 1.5 * ROUNDED * np.spacing(1.0 + np.abs(theta[:, None]))
         rows, places = np.nonzero(away <= room)
     if not rows.size:
         return None
@@ -122,7 +123,7 @@ def _nearest(values: ValuesUnderLoads, jumps: Jumps) -> Array:
     return np.where(np.isnan(first), np.where(after, starts, np.nextafter(starts, -inf)), nearest)
 
 
-def _certain(values: ValuesUnderLoads, rows: Rows, theta: Array, side: Array) -> Array:
+def _certain(values: ValuesUnderLoads, rows: Rows, theta: Array, side: NDArray[np.int8]) -> Array:
     """The nearest angles to dead centres from which on rounding takes the friction of their own side."""
     steps = np.arange(ROUNDED + 1.0) * np.spacing(np.abs(theta) + 1.0)[:, None]
     angles = theta[:, None] + side[:, None] * steps
@@ -135,18 +136,28 @@ def _certain(values: ValuesUnderLoads, rows: Rows, theta: Array, side: Array) ->
     return np.asarray(found)
 
 
+def _turns_round(kinds: NDArray[np.int8]) -> NDArray[np.bool_]:
+    """True where rounding may take the other side: at dead centres and where conditions change their sign."""
+    return np.asarray((kinds == TURNING) | (kinds >= CONDITION))
+
+
 def _move(values: ValuesUnderLoads, kind: int, what: int, rows: Rows, theta: Array, out: Array) -> None:
-    """Complete gradients of extrema at kinks, where a quantity of the motion keeps its value."""
-    parameters = values.search.parameters
-    if not rows.size:
+    """Complete gradients of extrema at kinks, where a quantity keeps its value."""
+    if not rows.size or what == FIXED:
         return
-    kept, *centre = KEPT[what]
-    names = [sensitivity(kept, "theta"), *(sensitivity(n, q) for n in (kept, *centre) for q in LENGTHS)]
-    designs = values.designs.part(rows)._replace(loads={})
-    found = designs.values(tuple(names), np.arange(rows.size), theta[rows])
+    designs, moved_by = values.designs.part(rows), values.search.parameters
+    if what < CONDITION:
+        kept, moved_by, designs = KEPT[what], LENGTHS, designs._replace(loads={})
+    else:
+        kept = (designs.conditions[what - CONDITION],)
+    state = "omega" in designs.columns
+    names = [sensitivity(name, p) for p in ("theta", *moved_by) for name in kept]
+    names = [name for name in names if has(name, state)]
+    by = designs.values(tuple(names), np.arange(rows.size), theta[rows])
     sign = np.where(out[0, rows] < 0.0, -1.0, 1.0) if kind == 0 else 1.0
-    for length in LENGTHS:
-        if length in parameters:
+    for place, parameter in enumerate(values.search.parameters):
+        if parameter in moved_by:
             with np.errstate(all="ignore"):
-                by = found[sensitivity(kept, length)] - sum(found[sensitivity(n, length)] for n in centre)
-                out[2 + parameters.index(length), rows] -= sign * out[1, rows] * by / found[names[0]]
+                slope, *centre = (by.get(sensitivity(name, parameter), 0.0) for name in kept)
+                shift = (slope - sum(centre)) / by[sensitivity(kept[0], "theta")]
+                out[2 + place, rows] -= sign * out[1, rows] * shift

@@ -80,12 +80,13 @@ class ValuesUnderLoads:
         some = bool(bad.any())
         theta = np.where(bad, 1.0, theta) if some else theta  # a value that any input can have
         held = self.course.pieces(rows, theta) if pieces is None else pieces
-        if pieces is None and self.designs.rubs:
-            theta = self.course.aside(rows, theta)
-        inputs: dict[str, Any] = {"alpha": 0.0, "theta": theta}
+        aside = self.course.aside(rows, theta) if pieces is None and self.designs.rubs else theta
+        inputs: dict[str, Any] = {"alpha": 0.0, "theta": aside}
         for name, column in self.designs.columns.items():
             inputs[name] = np.where(bad, 1.0, column[rows]) if some else column[rows]
         found = self._of_plan(count, inputs, held) if self.derived else self._of_search(inputs, held)
+        if aside is not theta:
+            found[0] = np.where(aside == theta, found[0], found[0] + found[1] * (theta - aside))
         return [np.where(bad, np.nan, row) for row in found[:count]] if some else found[:count]
 
     def _of_plan(self, count: int, inputs: dict[str, Any], held: dict[str, Rows]) -> list[Array]:

@@ -48,6 +48,7 @@ class SearchedDesigns(NamedTuple):
     rubs: bool  # whether friction has a say, or another source of kinks and jumps
     loads: Mapping[str, Load] = MappingProxyType({})  # those that vary with the motion
     accuracy: str = "standard"
+    conditions: tuple[str, ...] = ()  # quantities that are 0 where a user-defined one may jump or have a kink
 
     @property
     def size(self) -> int:

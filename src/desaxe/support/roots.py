@@ -74,3 +74,27 @@ def roots(function: Callable[[Any], Any], a: Any, b: Any, fa: Any, fb: Any) -> A
             safe = (phi * phi < xi) & ((1.0 - phi) * (1.0 - phi) < 1.0 - xi)
             fraction = np.where(open_, np.clip(np.where(safe, curved, 0.5), least, 1.0 - least), 0.0)
     return best
+
+
+def sign_changes(function: Callable[[Any, Any], Any], nodes: Any) -> Any:
+    """The first double after each sign change of a function between nodes, in rows with NaN in empty places.
+
+    function  of flat arrays: rows of the nodes, and a place in each
+    nodes     a row for each function, ascending
+    """
+    with IMPORTS:
+        import numpy as np
+
+    count, width = nodes.shape
+    values = function(np.repeat(np.arange(count), width), nodes.reshape(-1)).reshape(nodes.shape)
+    row, k = np.nonzero(np.diff(values > 0.0, axis=1) & np.isfinite(values[:, 1:] + values[:, :-1]))
+    low, high, rising = nodes[row, k], nodes[row, k + 1], values[row, k + 1] > 0.0
+    for _ in range(STEPS):
+        middle = 0.5 * (low + high)
+        if not ((low < middle) & (middle < high)).any():
+            break
+        after = (function(row, middle) > 0.0) == rising
+        low, high = np.where(after, low, middle), np.where(after, middle, high)
+    changes = np.full((count, np.bincount(row, minlength=1).max()), np.nan)
+    changes[row, np.arange(row.size) - np.searchsorted(row, row)] = high
+    return changes

@@ -150,7 +150,7 @@ def _over_a_turn(
         "power_mean": net / period,
     }
     before, after = turn.ends(torque)[:, 1], np.roll(turn.ends(torque)[:, 0], -1)
-    jump, moves = before - after, design.moves(turn.edges[1:])
+    jump, moves = before - after, design.moves(["T_in"], turn.edges[1:])
     rate = np.sqrt(design.numbers["omega0"] ** 2 + 2.0 * alpha * turn.edges[1:])
 
     def moving(name: str, jump: Array) -> float:

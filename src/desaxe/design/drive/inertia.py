@@ -162,8 +162,8 @@ def _gradient(design: Turn, fluctuation: float, state: FlywheelMotion) -> dict[s
     speed = design.numbers["omega0"]
     high, low = 1.0 + fluctuation / 2.0, 1.0 - fluctuation / 2.0
     ends, slopes = panels.ends(2.0 * alpha), panels.at(extremes, 2.0 * alpha)
-    jump, moves = ends[:, 1] - np.roll(ends[:, 0], -1), design.moves(panels.edges[1:])
-    extremes_move = design.moves(extremes)
+    jump, moves = ends[:, 1] - np.roll(ends[:, 0], -1), design.moves(["T_in"], panels.edges[1:])
+    extremes_move = design.moves(["T_in"], extremes)
     sides = {}
     for name in own:
         found = np.array(response(-flat[f"T_in_wrt_{name}"], jump * moves.get(name, 0.0)))

@@ -14,17 +14,22 @@ from typing import Any
 
 import numpy as np
 
+from ...definitions.conditions import conditions_of
 from ...evaluation.evaluate import evaluate
 from ...loads.angles import crossings, meeting_angles
 from ...loads.load import Load, OverY
+from ...mechanism.catalogue import has
 from ...mechanism.closed.angles import dead_centres, repeated
 from ...mechanism.names import LENGTHS, sensitivity
+from ...mechanism.own import used_by, using
 from ...runtime.request import request
 from ...support.computed import computed_once
 from ...support.panels import WIDEST, Array, Panels, resolved
+from ...support.roots import sign_changes
 
 MOST_TURNS = 4  # after which the loads must repeat; two in a four-stroke engine
 NEAR = 1e-9  # rad: an edge is where something keeps its value
+SAMPLES = 512  # of a turn, between which a condition changes its sign once
 ACROSS = np.array([0.5 * np.pi, 1.5 * np.pi])  # a crank across its guide
 Motion = Callable[[Array], dict[str, Array]]  # angles -> omega and alpha there
 
@@ -79,36 +84,59 @@ class Cycle:
         found = evaluate(list(names), theta=theta, branch=self.branch, **present)
         return {name: np.broadcast_to(found[name], theta.shape) for name in names}
 
-    @computed_once
-    def _moving(self) -> list[tuple[tuple[str, ...], Array]]:
-        """Quantities that keep their value at angles of jumps, which move; the angles, in rows."""
+    def _moving(self, names: Sequence[str]) -> list[tuple[tuple[str, ...], Array]]:
+        """A quantity, or two whose difference stays the same at angles of jumps, and these, in rows."""
         loads = [load for load in self.loads.values() if isinstance(load, OverY) and load.jumps]
         meeting = [(load.kept, crossings(load, load.jumps, self.lengths, self.branch)) for load in loads]
         groups = [(("Y_wrt_theta",), dead_centres(self.lengths)), *meeting]
-        return [(kept, repeated(angles, *self.ends)) for kept, angles in groups]
+        return [*((kept, repeated(angles, *self.ends)) for kept, angles in groups), *self._conditions(names)]
 
-    def moves(self, angles: Array) -> dict[str, Array]:
-        """By how much each length moves angles of jumps, in rows [1/m]; 0 for other angles."""
-        moves = {name: np.zeros(angles.shape) for name in LENGTHS}
+    def _conditions(self, names: Sequence[str]) -> list[tuple[tuple[str, ...], Array]]:
+        """Conditions of user-defined quantities, and where each changes its sign."""
+        nodes = np.tile(np.linspace(*self.ends, SAMPLES * self.turns + 1), (self.lengths[0].size, 1))
+        conditions = conditions_of(used_by(names))
+        found: list[tuple[tuple[str, ...], Array]] = []
+        for name in (condition.name for condition in conditions):
+
+            def value(row: Array, theta: Array, name: str = name) -> Array:
+                return Cycle.values(self, [name], theta, row)[name]
+
+            with using(conditions):
+                found.append(((name,), sign_changes(value, nodes)))
+        return found
+
+    def moves(self, names: Sequence[str], angles: Array) -> dict[str, Array]:
+        """By how much each input moves angles of jumps of quantities, in rows [1/its unit]; 0 for others."""
+        moves: dict[str, Array] = {}
         free = np.ones(angles.shape, bool)
-        lengths = dict(zip(LENGTHS, self.lengths, strict=True))
-        for kept, marks in self._moving:
+        for kept, marks in self._moving(names):
             gaps = (np.abs(angles - mark[:, None]) % self.angle for mark in marks.T)
             row, k = np.nonzero(free & _any_near(gaps, self.angle, angles.shape))
             if not row.size:
                 continue
             free[row, k] = False
-            names = [sensitivity(kept[0], "theta"), *(sensitivity(name, p) for name in kept for p in LENGTHS)]
-            at: dict[str, Any] = {name: length[row] for name, length in lengths.items()}
-            by = evaluate(
-                list(dict.fromkeys(names)), theta=angles[row, k], branch=self.branch, omega0=1.0, **at
-            )
-            along = by[names[0]]
-            for p in LENGTHS:
-                slope = by[sensitivity(kept[0], p)] - sum(by[sensitivity(name, p)] for name in kept[1:])
-                with np.errstate(invalid="ignore", divide="ignore"):
-                    moves[p][row, k] = np.where(along == 0.0, 0.0, -slope / along)
+            for p, shift in self._shifts(names, kept, row, angles[row, k]).items():
+                moves.setdefault(p, np.zeros(angles.shape))[row, k] = shift
         return moves
+
+    def _shifts(
+        self, names: Sequence[str], kept: tuple[str, ...], row: Array, theta: Array
+    ) -> dict[str, Array]:
+        """The derivatives of angles at which a quantity, or the difference of two, keeps its value."""
+        conditions = conditions_of(used_by(names))
+        of_motion = kept[0] not in {condition.name for condition in conditions}
+        parameters = LENGTHS if of_motion else tuple(p for p in self.numbers if p != "theta")
+        along, state = sensitivity(kept[0], "theta"), "omega" in self.numbers
+        with using(conditions):
+            slopes = {p: [sensitivity(name, p) for name in kept] for p in parameters}
+            slopes = {p: both for p, both in slopes.items() if all(has(name, state) for name in both)}
+            by = Cycle.values(self, [along, *(name for both in slopes.values() for name in both)], theta, row)
+        shifts = {}
+        for p, (first, *centre) in slopes.items():
+            slope = by[first] - sum(by[name] for name in centre)
+            with np.errstate(invalid="ignore", divide="ignore"):
+                shifts[p] = np.where(by[along] == 0.0, 0.0, -slope / by[along])
+        return shifts
 
     def edges(self, names: Sequence[str], motion: Motion | None = None, **other: Any) -> Array:
         """The angles between which quantities are smooth: a row for each design, in any order, with NaN."""
@@ -116,8 +144,8 @@ class Cycle:
         low, high = self.ends
         across = repeated(ACROSS, low, high)
         met = meeting_angles(self.loads.values(), high, self.lengths, self.branch, low)
-        dead = repeated(dead_centres(self.lengths), low, high)
-        parts = [np.array([[low, high]]), across[None], met, dead]
+        moving = [angles for _, angles in self._moving(names)]
+        parts = [np.array([[low, high]]), across[None], met, *moving]
         edges = np.concatenate([np.broadcast_to(part, (size, part.shape[1])) for part in parts], axis=1)
         if self.has_friction and self._depend_on_friction(names):
             sides = resolved(

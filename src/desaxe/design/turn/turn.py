@@ -92,9 +92,9 @@ class Turn(Cycle):
             raise NoCycleError(told, why)
         return found
 
-    def moves(self, angles: Array) -> dict[str, Array]:
-        """By how much each length moves angles of jumps [1/m]; 0 for other angles."""
-        return {name: moves[0] for name, moves in super().moves(angles[None]).items()}
+    def moves(self, names: Sequence[str], angles: Array) -> dict[str, Array]:
+        """By how much each input moves angles of jumps of quantities; 0 for other angles."""
+        return {name: moves[0] for name, moves in super().moves(names, angles[None]).items()}
 
     def edges(self, names: Sequence[str], motion: Motion | None = None, **other: Any) -> Array:
         """The angles between which quantities are smooth, in any order; NaN in between."""
