@@ -72,7 +72,7 @@ class Cells:
         for index, row in enumerate(self.head()[self.start :]):
             beyond = next((k for k, cell in enumerate(row) if k >= len(heading) and cell.strip()), None)
             if beyond is not None:
-                problem = f"a cell beyond the heading's {len(heading)}; {DECIMAL_COMMA}"
+                problem = f"the heading has {len(heading)} columns: name every one; {DECIMAL_COMMA}"
                 self.refuse(index, beyond, "no heading", problem)
 
     def number(self, cell: str) -> float | None:
