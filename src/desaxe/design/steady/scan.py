@@ -1,4 +1,4 @@
-"""All steady states of designs: turns from many speeds, and the changes of sign of what a turn gains.
+"""All steady states of designs: turns from many speeds, and where what a turn gains falls through 0.
 
 P(E), the energy a turn after E, ascends; its fixed points are where the gain P(E) - E changes sign. Turns are
 followed by the Radau IIA method of three stages, which a stiff motor does not upset, from speeds that the
@@ -176,13 +176,12 @@ def _solved(a: Array, b: Array) -> Array:
 
 
 class Brackets(NamedTuple):
-    """Changes of sign: the design of each, an energy at the start, and the bracket around it."""
+    """Where gains fall through 0: the design of each, an energy at the start, and the bracket around it."""
 
     design: Array
     E0: Array
     low: Array
     high: Array
-    falls: Array  # whether the gain falls through 0 there: then the motion is stable
 
 
 class Scan(NamedTuple):
@@ -193,13 +192,20 @@ class Scan(NamedTuple):
     gains: Array
 
     def found(self) -> Brackets:
-        """All changes of sign, and where in between the gain vanishes."""
+        """Where gains fall through 0: there a motion is stable."""
+        return self._changes(1.0)
+
+    def rises(self) -> Brackets:
+        """Where they rise through 0: there a motion is unstable."""
+        return self._changes(-1.0)
+
+    def _changes(self, before: float) -> Brackets:
         with np.errstate(invalid="ignore"):
-            sign = np.sign(self.gains)
-            design, at = np.nonzero(sign[:, 1:] * sign[:, :-1] < 0.0)
+            sign = before * np.sign(self.gains)
+            design, at = np.nonzero((sign[:, :-1] > 0.0) & (sign[:, 1:] < 0.0))
         low, high = self.starts[design, at], self.starts[design, at + 1]
         below, above = self.gains[design, at], self.gains[design, at + 1]
-        return Brackets(design, low + (high - low) * below / (below - above), low, high, below > 0.0)
+        return Brackets(design, low + (high - low) * below / (below - above), low, high)
 
 
 def scan(designs: DesignRows, edges: Array) -> Scan:
@@ -219,8 +225,7 @@ def scan(designs: DesignRows, edges: Array) -> Scan:
         starts, gains = np.concatenate([starts, extra], 1), np.concatenate([gains, extra_gain], 1)
         order = np.argsort(starts, axis=1)
         starts, gains = np.take_along_axis(starts, order, 1), np.take_along_axis(gains, order, 1)
-    found = Scan(turns, starts, gains).found()
-    none = np.setdiff1d(np.arange(designs.size), found.design[found.falls])
+    none = np.setdiff1d(np.arange(designs.size), Scan(turns, starts, gains).found().design)
     if len(none):
         gains[none] = turns.rows(none).gain(starts[none], cuts=DEEP)
     return Scan(turns, starts, gains)

@@ -48,7 +48,8 @@ def states_of(designs: DesignRows, gradient: bool) -> States:
         if len(lanes):
             _settle(solved, edges[found.design[lanes]], scanned.turns, found, lanes)
     solved.jams |= vanishing(designs)[found.design]
-    good = np.flatnonzero(solved.good & _first_of_each(found.design, solved.E0))
+    stable = solved.values.get("stable", solved.good) | solved.jams
+    good = np.flatnonzero(solved.good & stable & _first_of_each(found.design, solved.E0))
     return States(
         found.design[good],
         solved.E0[good],
@@ -67,7 +68,7 @@ def _settle(solved: "_Solved", edges: Array, turns: Turns, found: Brackets, lane
     found = picked(found, lanes)
     first = _from_turns(turns.rows(found.design), found.E0)
     stable = first.log_multiplier < 0.0
-    lost = ~first.good | (stable != found.falls) | ~_first_of_each(found.design, first.E0)
+    lost = ~first.good | ~stable | ~_first_of_each(found.design, first.E0)
     kept = np.flatnonzero(~lost)
     solved.settle(lanes[kept], edges[kept], _rows(first, kept))
     again = np.flatnonzero(lost | ~solved.good[lanes])

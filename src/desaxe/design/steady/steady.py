@@ -46,8 +46,8 @@ def steady(
     inputs            lengths, masses, loads as in `evaluate`; F_X and F_Y may vary with the motion, over up
                       to four turns. omega0 only says which way the crank turns, if the motor does not
 
-    In theta the kinetic energy obeys one scalar equation. All of its periodic solutions are found, stable or
-    not, and polished to rounding. Returns a dict with the values of the stable one at the highest speed:
+    In theta the kinetic energy obeys one scalar equation. All of its stable periodic solutions are found and
+    polished to rounding. Returns a dict with the values of the stable one at the highest speed:
 
     theta, omega, T_motor   arrays over a period, in the way of turning: angle [rad], speed, motor's torque
     period, omega_mean      time of a turn, or of those after which the loads repeat [s]; their angle over it
@@ -58,7 +58,7 @@ def steady(
                             derivative, by each number given: inputs, flywheel_inertia, those of the motor.
                             With `fluctuation`, at the flywheel found, and of `flywheel_inertia` besides
     flywheel_inertia        as given or found
-    others                  list of dicts as this one: the other periodic motions, by descending speed
+    others                  list of dicts as this one: the other stable motions, by descending speed
     status, message         0 ok; 1 none: all is NaN, and `message` says whether the motor is too weak, and
                             where it stalls, or too strong; 4 bad input
 

@@ -28,12 +28,9 @@ def why_none(designs: DesignRows, states: States, k: int) -> str:
     own = states.design == k
     if (own & states.jams).any():
         return "no steady state: the guide jams, friction leaves no balance of forces"
-    if own.any():
-        speeds = sorted(states.figures.values["omega_mean"][own].tolist(), key=abs)
-        return (
-            f"no stable steady state: below the unstable ones (omega_mean = {_each(speeds)}, in others) it "
-            "slows down, above them it runs away"
-        )
+    rises = scan.rises()
+    if (speeds := [_speed_of(scan, k, energy) for energy in rises.E0[rises.design == k]]) and not own.any():
+        return f"no steady state: below some {_each(speeds, '.2g')} it slows down, above it runs away"
     there = np.isfinite(gains)
     if not designs.source.varies and not designs.has_friction and there.any():
         return _of_number(designs, scan, k)
@@ -63,8 +60,8 @@ def _speed(scan: Scan, k: int, energy: float) -> str:
     return spoken("omega", _speed_of(scan, k, energy), ".6g", says_unit=True)
 
 
-def _each(speeds: list[float]) -> str:
-    return ", ".join(spoken("omega", speed, ".6g", says_unit=True) for speed in speeds)
+def _each(speeds: list[float], form: str = ".6g") -> str:
+    return ", ".join(spoken("omega", speed, form, says_unit=True) for speed in speeds)
 
 
 def _energy(work: float, form: str = ".6g") -> str:
