@@ -13,6 +13,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from .computed import computed_once
+from .roots import roots
 
 Array = NDArray[Any]
 
@@ -202,22 +203,12 @@ def _series(coefficients: Array, x: Array) -> Array:
 
 
 def _root(series: Array, low: Array, high: Array) -> Array:
-    """The roots of Legendre series in brackets, by Illinois steps and bisection."""
+    """The roots of Legendre series in brackets; of equal signs, which rounding makes, the nearer end."""
     at_low, at_high = _series(series, low), _series(series, high)
-    nearer, agree = np.where(np.abs(at_low) < np.abs(at_high), low, high), at_low * at_high > 0.0
-    low, high = np.where(agree, nearer, low), np.where(agree, nearer, high)  # a root at an end, rounded
-    for step in range(60):
-        with np.errstate(invalid="ignore", divide="ignore"):
-            x = high - at_high * (high - low) / (at_high - at_low)
-        x = np.where((x > low) & (x < high) & (step % 3 < 2), x, 0.5 * (low + high))
-        here = _series(series, x)
-        same = np.sign(here) == np.sign(at_high)
-        at_low, at_high = np.where(same, 0.5 * at_low, here), np.where(same, here, 0.5 * at_high)
-        low, high = np.where(same, low, x), np.where(same, x, high)
-        # Halved values steer the secant only; the signs, which decide, stay.
-        if not (high - low > 4e-16).any():
-            break
-    return np.where(np.abs(at_low) < np.abs(at_high), low, high)
+    nearer = np.where(np.abs(at_low) < np.abs(at_high), low, high)
+    # Shifted by 2 so that the last bits of a root near 0 do not count.
+    inside = roots(lambda x: _series(series, x - 2.0), low + 2.0, high + 2.0, at_low, at_high) - 2.0
+    return np.where(at_low * at_high > 0.0, nearer, inside)
 
 
 def _shares(x: Array) -> Array:
