@@ -17,7 +17,7 @@ from .dynamics import FORCES, LUMPS, centres_sheet
 from .freeze import freeze
 from .groups import FRAME
 from .motion import state_sheet
-from .polynomials import double_trigonometry, single_trigonometry, trigonometry
+from .polynomials import double_trigonometry, trigonometry
 from .quantities import FACTS, QUANTITIES, SECOND_ORDER, build_sheet
 from .sheet import Sheet, symbol
 
@@ -38,7 +38,6 @@ class Derivation(NamedTuple):
     centres: Program  # the lines of centres of mass that are halfway along their links
     names: tuple[str, ...]
     trigonometry: Trigonometry
-    single_trigonometry: Trigonometry  # in single precision
     double_trigonometry: DoubleTrigonometry  # to twice the digits
 
 
@@ -86,7 +85,6 @@ def build() -> Derivation:
         *overlays,
         public_names(),
         trigonometry(),
-        single_trigonometry(),
         double_trigonometry(),
     )
 

@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterable
 
 from mpmath import mp, mpf
 
-from desaxe.compiler.interpret import to_single
 from desaxe.compiler.passes.double_angles import DoubleTrigonometry
 from desaxe.compiler.passes.trigonometry import Trigonometry
 
@@ -19,10 +18,6 @@ TURNS = 20  # bits of the number of quarters; a part of pi/2 has the others of 5
 PARTS = 4  # so that angles next to a multiple of pi/2 keep all their digits
 TERMS = 6
 EXCHANGES = 8
-
-# For single precision: 24 bits, angles up to 201 rad.
-SINGLE_TURNS = 7
-SINGLE_TERMS = 3
 
 # For twice the digits, with a third word: a term needs as many words as it is larger than 2^-130 or so.
 DOUBLE_TURNS = 30
@@ -42,17 +37,6 @@ def trigonometry() -> Trigonometry:
             sine=_rounded(_minimax(_sine_rest, lambda z: mp.sin(mp.sqrt(z)) / (mp.sqrt(z) * z), TERMS)),
             cosine=_rounded(_minimax(_cosine_rest, lambda z: mp.cos(mp.sqrt(z)) / z**2, TERMS)),
         )
-
-
-def single_trigonometry() -> Trigonometry:
-    """The constants for single precision, of which every one is."""
-    with mp.workdps(60):
-        parts = _parts(mp.pi / 2, SINGLE_TURNS, PARTS, 24), _parts(mp.pi / 2, 0, 2, 24)
-        sine = _minimax(_sine_rest, lambda z: mp.sin(mp.sqrt(z)) / (mp.sqrt(z) * z), SINGLE_TERMS)
-        cosine = _minimax(_cosine_rest, lambda z: mp.cos(mp.sqrt(z)) / z**2, SINGLE_TERMS)
-        tables = [tuple(map(to_single, _rounded(row))) for row in (*parts, sine, cosine)]
-        limit = float(mp.floor(2**SINGLE_TURNS * mp.pi / 2))
-        return Trigonometry(limit, to_single(float(2 / mp.pi)), *tables)
 
 
 def double_trigonometry() -> DoubleTrigonometry:

@@ -162,10 +162,9 @@ def _index(derivation: Derivation, digest: str) -> str:
 
 
 def _trigonometry(derivation: Derivation, digest: str) -> str:
-    what = "Polynomials of sine and cosine on |y| <= pi/4, and pi/2 in parts, for three accuracies."
+    what = "Polynomials of sine and cosine on |y| <= pi/4, and pi/2 in parts, for two accuracies."
     tables: dict[str, Trigonometry | DoubleTrigonometry] = {
         "CONSTANTS": derivation.trigonometry,
-        "SINGLE": derivation.single_trigonometry,
         "DOUBLE": derivation.double_trigonometry,
     }
     texts = [

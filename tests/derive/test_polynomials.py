@@ -5,7 +5,7 @@ import math
 import mpmath
 import pytest
 
-from desaxe.derive.polynomials import double_trigonometry, single_trigonometry, trigonometry
+from desaxe.derive.polynomials import double_trigonometry, trigonometry
 from desaxe.mechanism.constants import constants, double_constants
 
 HALF_BIT = 2.0**-53
@@ -40,7 +40,6 @@ def test_the_cosine(made):
 # Constants, digits of the numbers that they reduce, bits of pi/2 in all.
 REDUCTIONS = {
     "double": (trigonometry, 53, 150),
-    "single": (single_trigonometry, 24, 73),
     "twice": (double_trigonometry, 53, 143),
 }
 

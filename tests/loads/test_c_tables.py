@@ -1,4 +1,4 @@
-"""C under loads: NULL, tables from points, `alpha`, `step`, single precision, and no stray byte."""
+"""C under loads: NULL, tables from points, `alpha`, `step`, and no stray byte."""
 
 import ctypes
 import math
@@ -11,7 +11,7 @@ import desaxe as dx
 from tests.compiler.languages.runners import in_c
 from tests.compiler.languages.tools import STRICT, library, pointer, run, tool
 from tests.effort import cases
-from tests.loads.module_loads import KINDS, SHAPES, load, scene, wrong_tables
+from tests.loads.module_loads import SHAPES, load, scene, wrong_tables
 
 DOUBLE = ctypes.c_double
 STILL = {"ec": 0.01, "AB": 0.035, "BC": 0.064, "m_slider": 0.8, "I_crank": 2e-4}
@@ -212,49 +212,3 @@ def test_the_sanitizers_find_nothing(kind, tmp_path):
     flags = [*STRICT, "-g", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
     run(tool("gcc"), *flags, place / "main.c", place / "press.c", "-o", place / "main", "-lm")
     run(place / "main")
-
-
-FLOAT, FLOATS = np.float32, ctypes.POINTER(ctypes.c_float)
-
-
-@pytest.mark.sampled
-@pytest.mark.parametrize(
-    ("kind", "form"),
-    [("theta", "arguments"), pytest.param(ONE, "frozen", marks=pytest.mark.thorough)],
-)
-def test_single_precision_under_tables(kind, form, tmp_path):
-    """In float ulp over 1 + condition, 64 promised; the condition counts the place in the table."""
-    one = load(kind, "smooth")
-    content = scene(one, outputs=["T_in", "N_C", "status"])
-    more = {"tables": form} if form == "arguments" else {}
-    place = dx.compile(content, tmp_path / "press", to="c", float=True, **more)
-    point = library(place / "press.c", options=("-O2",)).press_point
-    table = [np.array(column, FLOAT) for column in one.arrays()]
-    tables = [*(column.ctypes.data_as(FLOATS) for column in table), ctypes.c_int64(table[0].size)]
-    tables = tables if form == "arguments" else []
-    rng, worst, out = np.random.default_rng(9), 0.0, np.zeros(3, FLOAT)
-    names = ["theta", "ec", "AB", "omega0"]
-    for _ in range(cases(200, 1_000, 20_000)):
-        row = np.array(rng.uniform((-90, -0.02, 0.03, -9), (90, 0.02, 0.04, 9)), FLOAT)
-        there = {**dict(zip(names, map(float, row), strict=True)), "BC": 0.064, "m_slider": 0.8, "F_Y": one}
-        status = point(row.ctypes.data_as(FLOATS), out.ctypes.data_as(FLOATS), *tables)
-        assert status == 0
-        for name, value in zip(("T_in", "N_C"), out.tolist(), strict=False):
-            by = ("theta", "ec", "AB", "BC", "omega0")
-            found = dx.evaluate([name, f"{name}_wrt_F_Y", *(f"{name}_wrt_{p}" for p in by)], **there)
-            size = abs(found[name]) + abs(found[f"{name}_wrt_F_Y"]) * one.largest
-            size += sum(abs(found[f"{name}_wrt_{p}"] * there[p]) for p in by)
-            worst = max(worst, abs(value - found[name]) / (2.0**-23 * size))
-    assert worst < 64
-
-
-@pytest.mark.thorough
-def test_every_kind_compiles_in_single_precision(tmp_path):
-    """Without a warning, tables of all kinds given to each call."""
-    for kind in KINDS:
-        folder = tmp_path / kind.replace(" ", "_")
-        place = dx.compile(
-            scene(load(kind, "kinked")), folder / "press", to="c", float=True, tables="arguments"
-        )
-        assert "double" not in (place / "press.h").read_text().split("*/")[-1]
-        run(tool("gcc"), *STRICT, "-fsyntax-only", place / "press.c")

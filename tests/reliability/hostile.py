@@ -216,9 +216,7 @@ def calls() -> dict[str, Call]:
         "scene": Call(dx.scene, (), {"source": SCENE}),
         "explain": Call(dx.explain, (), {"scene": SCENE}),
         **{
-            f"compile to {to}": Call(
-                written(dx.compile), (SCENE,), {"to": to}, ("libm", "check", "overwrite")
-            )
+            f"compile to {to}": Call(written(dx.compile), (SCENE,), {"to": to}, ("check", "overwrite"))
             for to in (*(language.name for language in languages()), "fmu")
         },
         "explore": Call(written(dx.explore), (SCENE,), {}, ("branch", "title", "units", "names")),

@@ -83,7 +83,7 @@ REFUSED = {
     "memory": (lambda: dx.sweep("a_C", store="x", memory=HUGE, theta=[1.0, 2.0], **MACHINE), ["memory"]),
     "store": (lambda: dx.sweep("a_C", store=1.0, theta=[1.0, 2.0], **MACHINE), ["store", "1.0"]),
     "names of a page": (lambda: dx.explore(path="a.html", names=1.0, **MACHINE), ["names", "1.0"]),
-    "an array for a yes or no": (lambda: dx.compile({}, "a.c", to="c", libm=np.ones(2)), ["libm", "True"]),
+    "an array for a yes or no": (lambda: dx.compile({}, "a.c", to="c", check=np.ones(2)), ["check", "True"]),
     "a tiny fluctuation": (lambda: dx.drive(fluctuation=5e-324, m_slider=1.0, **MACHINE), ["fluctuation"]),
     "a range as a table": (lambda: dx.scene({"reduce": range(0)}), ["reduce"]),
     "a huge branch": (lambda: dx.scene({"mechanism": {"branch": HUGE}}), ["branch"]),

@@ -101,14 +101,6 @@ def add_compile(commands: Any) -> None:
     parser.add_argument("-o", metavar="PLACE", dest="place", required=True, help="the file, or its folder")
     parser.add_argument("--to", metavar="LANGUAGE", default="numba", help="language (default: numba)")
     parser.add_argument(
-        "--no-libm",
-        action="store_true",
-        help="C without libm: elementary functions of its own, for bare metal",
-    )
-    parser.add_argument(
-        "--float", action="store_true", help="C in single precision, for a processor without doubles"
-    )
-    parser.add_argument(
         "--tables", choices=("frozen", "arguments"), default="frozen",
         help="tables of loads: in the text, or knots and coefficients as arguments (default: frozen)",
     )  # fmt: skip
@@ -132,7 +124,7 @@ def _compile(options: argparse.Namespace) -> int:
     from ..scenes.export.command import run_compile
     from ..scenes.export.portable import Form
 
-    form = Form(options.no_libm, options.float, options.tables == "arguments")
+    form = Form(options.tables == "arguments")
     return run_compile(
         options.scene, options.place, options.to, form, options.check, options.overwrite,
         options.fmi, options.input,

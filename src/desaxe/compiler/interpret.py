@@ -5,7 +5,6 @@ functions such as ``mpmath.mp``; it is how the tests tell what a pass did to the
 """
 
 import math
-import struct
 from collections.abc import Mapping
 from typing import Any
 
@@ -46,37 +45,6 @@ def run_in_doubles(program: Program, values: Mapping[str, Any]) -> dict[str, Any
 def ieee(op: str, *args: Any) -> Any:
     """Apply one operation to Python numbers with IEEE 754 semantics."""
     return _IEEE[op](*args)
-
-
-def ieee_single(op: str, *args: Any) -> Any:
-    """Apply one operation to numbers of single precision, as a machine that has no other would.
-
-    Twice the digits and two more are enough to round sums, products, quotients and roots right.
-    """
-    if op == "rounding":
-        return to_single(2.0**-22 * math.fabs(args[0]))
-    if op == "power_of_two":
-        return _power_of_two(args[0], 100)
-    if op not in ("two_sum_error", "two_product_error"):
-        found = ieee(op, *args)
-        return to_single(found) if isinstance(found, float) else found
-    with IMPORTS:
-        from fractions import Fraction
-
-    rounded = to_single(args[0] + args[1] if op == "two_sum_error" else args[0] * args[1])
-    if rounded - rounded != 0.0:
-        return math.nan
-    a, b = map(Fraction, args)
-    return to_single(float((a + b if op == "two_sum_error" else a * b) - Fraction(rounded)))
-
-
-def to_single(value: float) -> float:
-    """The number of single precision that is nearest."""
-    try:
-        rounded: float = struct.unpack("f", struct.pack("f", value))[0]
-    except OverflowError:
-        return math.copysign(math.inf, value)
-    return rounded
 
 
 def _divide(a: float, b: float) -> float:
@@ -136,8 +104,8 @@ def _two_product_error(a: float, b: float) -> float:
     return float(Fraction(a) * Fraction(b) - Fraction(product))
 
 
-def _power_of_two(a: float, most: int = 960) -> float:
-    fraction, power = math.frexp(min(max(a, 2.0**-most), 2.0**most)) if a == a else (0.5, most + 1)
+def _power_of_two(a: float) -> float:
+    fraction, power = math.frexp(min(max(a, 2.0**-960), 2.0**960)) if a == a else (0.5, 961)
     return math.ldexp(1.0, power - (fraction == 0.5))
 
 

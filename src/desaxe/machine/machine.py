@@ -246,25 +246,23 @@ class Machine(Mapping[str, Any]):
         outputs: Any = OUTPUTS,
         to: str = "numba",
         *,
-        libm: bool = True,
         check: bool = False,
         overwrite: bool = False,
         fmi: int = 3,
         input: str = "torque",
-        float: bool = False,
         tables: str = "frozen",
         **more: Any,
     ) -> Any:
         """`desaxe.compile` of the scene of this machine: source code that needs nothing of desaxe; its path.
 
-        path, to, libm, check, overwrite, fmi, input, float, tables as there, others as in `scene`. The code
+        path, to, check, overwrite, fmi, input, tables as there, others as in `scene`. The code
         takes and gives SI units.
         """
         with IMPORTS:
             from ..scenes.export.compile import compile
 
-        options: Any = {"libm": libm, "check": check, "overwrite": overwrite, "fmi": fmi, "input": input}
-        return compile(self.scene(outputs, **more), path, to, float=float, tables=tables, **options)
+        options: Any = {"check": check, "overwrite": overwrite, "fmi": fmi, "input": input}
+        return compile(self.scene(outputs, **more), path, to, tables=tables, **options)
 
     def report(
         self,

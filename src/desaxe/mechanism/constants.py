@@ -17,12 +17,6 @@ def constants() -> Trigonometry:
 
 
 @cache
-def single_constants() -> Trigonometry:
-    """Sine and cosine coefficients for single precision."""
-    return Trigonometry(**imported("desaxe.generated.trigonometry").SINGLE)
-
-
-@cache
 def double_constants() -> "DoubleTrigonometry":
     """Sine and cosine coefficients for double-double."""
     with IMPORTS:

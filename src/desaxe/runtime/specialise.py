@@ -21,8 +21,7 @@ def specialise(
 
     A value that loses what it depended on (V_C by alpha for a given state, the torque of a massless
     rod) is still NaN where the mechanism cannot be assembled, or has stalled. A name of a user's own
-    is the one that the form has, or as it is defined now. Accuracy: standard, extended, or single, whose
-    fixed inputs are of single precision.
+    is the one that the form has, or as it is defined now. Accuracy: standard or extended.
     """
     return _specialise(names, form if form.own else form._replace(own=used_by(names)), fixed, accuracy)
 
@@ -34,8 +33,7 @@ def _specialise(
     if form.under is not None:
         return _under_loads(form.under, form._replace(under=None), fixed, accuracy)
     program = _with_extended_forms(program_of(names, form), accuracy)
-    single = accuracy == "single"
-    result = optimise(program, dict(fixed), single=single)
+    result = optimise(program, dict(fixed))
     before, after = _needs(program), _needs(result)
     kept = {"D"} if dict(fixed).get("alpha") == 0.0 else set(KEPT)  # a crank at constant speed never stalls
     outputs = program.outputs
@@ -54,7 +52,7 @@ def _specialise(
         if lost.get(name):
             lines.append(Line(name, "copy", (value,)))
     whole = keep_outputs(wide._replace(lines=tuple(lines)), outputs)
-    return optimise(whole, dict(fixed), single=single)
+    return optimise(whole, dict(fixed))
 
 
 def _under_loads(under: Under, form: Variant, fixed: tuple[tuple[str, float], ...], accuracy: str) -> Program:

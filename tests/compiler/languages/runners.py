@@ -20,7 +20,7 @@ from tests.compiler.languages.tools import (
 )
 
 
-def by_numba(place, outputs, libm):
+def by_numba(place, outputs):
     """Arrays where a scene was written, else the functions of one output each."""
     module = imported(place)
     if hasattr(module, "evaluate"):
@@ -31,9 +31,9 @@ def by_numba(place, outputs, libm):
     }
 
 
-def by_c(place, outputs, libm):
+def by_c(place, outputs):
     """`name_array`, as gcc compiles it without fused products."""
-    loaded = library(place, "gcc", ("-O2", "-ffp-contract=off"), libm)
+    loaded = library(place, "gcc", ("-O2", "-ffp-contract=off"))
 
     def call(given, tables):
         size = next(iter(given.values())).size
@@ -45,7 +45,7 @@ def by_c(place, outputs, libm):
     return call
 
 
-def by_octave(place, outputs, libm):
+def by_octave(place, outputs):
     """The function, called once."""
 
     def call(given, tables):
@@ -55,7 +55,7 @@ def by_octave(place, outputs, libm):
     return call
 
 
-def by_jax(place, outputs, libm):
+def by_jax(place, outputs):
     """`evaluate` in doubles."""
 
     def call(given, tables):
@@ -66,7 +66,7 @@ def by_jax(place, outputs, libm):
     return call
 
 
-def by_javascript(place, outputs, libm):
+def by_javascript(place, outputs):
     """`evaluate` of arrays, by node."""
 
     def call(given, tables):
@@ -97,12 +97,12 @@ def in_c(tables):
     return found
 
 
-def caller(language, place, inputs, outputs, libm=True):
+def caller(language, place, inputs, outputs):
     """A file that a language wrote, as a function of columns, and of tables that are arguments.
 
     tables  name -> knots and coefficients
     """
-    run = RUNNERS[language](place, list(outputs), libm)
+    run = RUNNERS[language](place, list(outputs))
 
     def call(columns, tables=None):
         found = run(dict(zip(inputs, columns, strict=True)), tables or {})
@@ -115,4 +115,4 @@ def compiled(language, folder, scene, inputs, name="press", **options):
     """The module of a scene, as such a function."""
     place = folder / f"{name}_{language}{language_of(language).suffix}"
     dx.compile(scene, place, to=language, **options)
-    return caller(language, place, inputs, scene["outputs"], options.get("libm", True))
+    return caller(language, place, inputs, scene["outputs"])

@@ -38,11 +38,10 @@ def run(*command, **more):
     return done.stdout
 
 
-def library(source, compiler="gcc", options=("-O0",), libm=True):
+def library(source, compiler="gcc", options=("-O0",)):
     """A C source as a loaded library; no warning is let pass."""
-    place = source.with_name(f"{source.stem}_{compiler}{''.join(options)}{libm}.so")
-    last = ["-lm"] if libm else ["-nostdlib"]
-    run(tool(compiler), *STRICT, *options, "-shared", "-fPIC", source, "-o", place, *last)
+    place = source.with_name(f"{source.stem}_{compiler}{''.join(options)}.so")
+    run(tool(compiler), *STRICT, *options, "-shared", "-fPIC", source, "-o", place, "-lm")
     return ctypes.CDLL(str(place))
 
 

@@ -3,7 +3,6 @@
 The worst error of each language as a share of what `standard` promises, over the points of `stress`.
 """
 
-import math
 import tempfile
 from pathlib import Path
 
@@ -12,16 +11,14 @@ from tests.compiler.languages.runners import compiled
 from tests.compiler.languages.tools import imported, jax_in_doubles
 from tests.scenes.export.stress import INPUTS, NAMES, columns, scene, shares
 
-REACH = 1.6e6  # rad, without libm
 
-
-def arrays(language, reach=math.inf, **options):
+def arrays(language):
     """The values of a language's arrays."""
 
     def values(folder, branch):
-        return compiled(language, folder, scene(branch), INPUTS, **options)(columns(branch, reach))
+        return compiled(language, folder, scene(branch), INPUTS)(columns(branch))
 
-    return values, reach
+    return values
 
 
 def numba(folder, branch):
@@ -40,21 +37,20 @@ def jax(folder, branch):
 
 LANGUAGES = {
     "c": arrays("c"),
-    "c, --no-libm": arrays("c", REACH, libm=False),
     "octave": arrays("octave"),
-    "jax, under jit": (jax, math.inf),
-    "numba, scalar functions": (numba, math.inf),
+    "jax, under jit": jax,
+    "numba, scalar functions": numba,
     "javascript": arrays("javascript"),
 }
 
 
 def main():
     print("| language | generic | worst | hardest family |\n|---|---|---|---|")
-    for name, (values, reach) in LANGUAGES.items():
+    for name, values in LANGUAGES.items():
         worst = {}
         for branch in (1, -1):
             with tempfile.TemporaryDirectory() as folder, jax_in_doubles():
-                for family, share in shares(values(Path(folder), branch), branch, reach):
+                for family, share in shares(values(Path(folder), branch), branch):
                     worst[family] = max(share, worst.get(family, 0.0))
         hardest = max(worst, key=worst.get)
         print(f"| {name} | {worst['generic']:.2g} | {worst[hardest]:.2g} | {hardest.replace('_', ' ')} |")

@@ -170,8 +170,6 @@ def test_what_a_language_lacks_is_refused_by_name(tmp_path):
         dx.compile(scene(), tmp_path / "press", to="fortran")
     with pytest.raises(ValueError, match='accuracy = "extended": jax has standard'):
         dx.compile(scene(accuracy="extended"), tmp_path / "press", to="jax")
-    with pytest.raises(ValueError, match="libm=False is for c"):
-        dx.compile(scene(), tmp_path / "press", to="octave", libm=False)
     assert not list(tmp_path.iterdir())
 
 

@@ -19,7 +19,6 @@ from tests.mechanism.closed.truth import design, truths
 NAMES = (*WHOLE, *SENSITIVITIES)
 OTHER = {"advance_angle": "return_angle", "return_angle": "advance_angle"}
 TWO = [0.1, 0.2]
-LANGUAGES = [("c", False), *((language, True) for language in RUNNERS)]
 
 
 def scene(names, way=1, branch=1, **axes):
@@ -59,12 +58,11 @@ def columns(branch):
 @pytest.mark.sampled
 @pytest.mark.parametrize(("branch", "way"), [(1, -1), (-1, 1)])
 @pytest.mark.parametrize(
-    ("language", "libm"),
-    [pytest.param(*case, marks=pytest.mark.thorough if case[0] in SLOW else ()) for case in LANGUAGES],
+    "language", [pytest.param(name, marks=pytest.mark.thorough if name in SLOW else ()) for name in RUNNERS]
 )
-def test_every_language_keeps_the_promise(language, libm, branch, way, tmp_path):
+def test_every_language_keeps_the_promise(language, branch, way, tmp_path):
     least = np.finfo(float).tiny if language == "jax" else 0.0
-    module = compiled(language, tmp_path, scene(NAMES, way, branch), LENGTHS, libm=libm)
+    module = compiled(language, tmp_path, scene(NAMES, way, branch), LENGTHS)
     confirm(module(columns(branch)), branch, way, least)
 
 

@@ -21,7 +21,7 @@ class JavaScript(Language):
     about = "an ES module and its types"
     open_tables = True
 
-    def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
+    def files(self, module: Module) -> dict[str, str]:
         """`name.js` and `name.d.ts`."""
         return {f"{module.name}.js": _source(module), f"{module.name}.d.ts": _types(module)}
 

@@ -157,7 +157,7 @@ class Jax(Language):
     second_order = True
     extended = False  # products may be fused with sums
 
-    def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
+    def files(self, module: Module) -> dict[str, str]:
         """`name.py`."""
         return {f"{module.name}.py": _text(module)}
 

@@ -34,7 +34,7 @@ class Octave(Language):
     about = "name.m, for GNU Octave and MATLAB"
     open_tables = True
 
-    def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
+    def files(self, module: Module) -> dict[str, str]:
         """`name.m`."""
         return {f"{module.name}.m": _text(module)}
 

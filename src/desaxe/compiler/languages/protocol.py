@@ -81,7 +81,6 @@ class Module(NamedTuple):
     motion       an acceleration and its status, for languages that take it: of a force, a position, a speed,
                  arguments, and the sign of the speed, which only friction takes
     constants    of the written-out sine and cosine; beyond their limit they are wrong
-    single       whether all numbers are of single precision, for languages that have it
     tables       name -> knots and coefficients of a table that Programs look into
     open_tables  name -> such a table whose content is an argument, for languages that take it
     """
@@ -97,7 +96,6 @@ class Module(NamedTuple):
     solvers: Mapping[str, Solver] = {}
     arguments: Mapping[str, Sequence[str]] = {}
     motion: Solver | None = None
-    single: bool = False
     tables: Mapping[str, Content] = {}
     open_tables: Mapping[str, OpenTable] = {}
 
@@ -114,12 +112,10 @@ class Language(ABC):
     suffix: str  # of the file that is called
     about: str  # what is written, for `desaxe compile --help`
     second_order = False  # whether `derivatives` and `values` are wanted
-    own_functions = False  # whether the language can do without a library of elementary functions
-    single = False  # whether the language is written in single precision, too
     open_tables = False  # whether tables can be arguments
     extended = True  # whether sums and products are rounded as they stand, which twice the digits want
     loops: Callable[[Kernel, str], str] | None = None  # writes a loop nest as a module
 
     @abstractmethod
-    def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
-        """File name -> text. `freestanding`: without a library of elementary functions."""
+    def files(self, module: Module) -> dict[str, str]:
+        """File name -> text."""

@@ -6,25 +6,22 @@ it is NaN, and whoever fixes the input has to see to that. Otherwise no result c
 the sign of a zero may).
 """
 
-from collections.abc import Callable
-from typing import Any
-
 from ..interpret import ieee
 from ..program import Argument, Line, Program, TableName
 from .slicing import drop_unused
 
 
-def fold_constants(program: Program, apply: Callable[..., Any] = ieee) -> Program:
+def fold_constants(program: Program) -> Program:
     """The program with constant lines computed and neutral operations gone.
 
-    Precondition: canonical form. Effect: as the module says; `apply` computes an operation of numbers. An
+    Precondition: canonical form. Effect: as the module says. An
     output that has become constant, or equal to another name, stays as a line of its own (a `copy`).
     """
     value: dict[str, Argument] = {}
     lines: list[Line] = []
     for line in program.lines:
         args = tuple(value.get(a, a) if isinstance(a, str) else a for a in line.args)
-        result = _simplified(Line(line.name, line.op, args, line.type), apply)
+        result = _simplified(Line(line.name, line.op, args, line.type))
         if isinstance(result, Line):
             lines.append(result)
         elif line.name in program.outputs:
@@ -35,7 +32,7 @@ def fold_constants(program: Program, apply: Callable[..., Any] = ieee) -> Progra
     return drop_unused(program._replace(lines=tuple(lines)))
 
 
-def _simplified(line: Line, apply: Callable[..., Any]) -> Line | Argument:
+def _simplified(line: Line) -> Line | Argument:
     """The line, a simpler line, or the argument that holds its value."""
     if line.op == "copy":
         return line.args[0]
@@ -44,7 +41,7 @@ def _simplified(line: Line, apply: Callable[..., Any]) -> Line | Argument:
     if line.op == "select" and line.args[1] == line.args[2] and isinstance(line.args[1], str):
         return line.args[1]
     if not any(isinstance(a, (str, TableName)) for a in line.args):
-        constant: Argument = apply(line.op, *line.args)
+        constant: Argument = ieee(line.op, *line.args)
         return constant
     rule = _RULES.get(line.op)
     return rule(line) if rule else line

@@ -1,11 +1,9 @@
 """The passes in their order, with what each of them saved."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from functools import partial
 from typing import NamedTuple
 
 from ..cost import Cost, cost_of
-from ..interpret import ieee_single
 from ..program import Program
 from .bind import bind_constants
 from .fold import fold_constants
@@ -34,12 +32,9 @@ PASSES = (
 )
 
 
-def optimise(program: Program, fixed: Mapping[str, float] | None = None, single: bool = False) -> Program:
-    """The program with `fixed` inputs bound, after every pass.
-
-    `single`: what is fixed is computed in single precision, in which the rest will run.
-    """
-    *_, (_, last) = _stages(program, fixed or {}, (), single)
+def optimise(program: Program, fixed: Mapping[str, float] | None = None) -> Program:
+    """The program with `fixed` inputs bound, after every pass."""
+    *_, (_, last) = _stages(program, fixed or {}, ())
     return last
 
 
@@ -55,13 +50,12 @@ def optimise_in_steps(
 
 
 def _stages(
-    program: Program, fixed: Mapping[str, float], without: Collection[str], single: bool = False
+    program: Program, fixed: Mapping[str, float], without: Collection[str]
 ) -> Iterator[tuple[str, Program]]:
     """The program before and after each pass."""
     program = bind_constants(program, fixed)
     yield "sliced", program
     for step in PASSES:
         if step.name not in without:
-            own = partial(fold_constants, apply=ieee_single) if single and step.name == "fold" else step.run
-            program = own(program)
+            program = step.run(program)
             yield step.name, program

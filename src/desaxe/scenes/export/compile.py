@@ -35,12 +35,10 @@ def compile(
     path: str | PathLike[str],
     to: str = "numba",
     *,
-    libm: bool = True,
     check: bool = False,
     overwrite: bool = False,
     fmi: int = 3,
     input: str = "torque",
-    float: bool = False,
     tables: str = "frozen",
 ) -> Path:
     """Write the outputs of a scene as source code of its own, which needs nothing of desaxe.
@@ -62,8 +60,7 @@ def compile(
                 FMI 3.0, or with `fmi=2` 2.0. A torque moves the crank; `input="omega"`: its speed is given
 
     A path that ends as the language's files do is the file; any other is a folder, whose last part is the
-    name. `libm=False` (c) writes elementary functions of its own, `float=True` (c) single precision: values
-    of the inputs as rounded to float, |theta| up to 100 rad. The same scene gives the same bytes;
+    name. The same scene gives the same bytes;
     `tables="arguments"` makes the tables of loads arguments: knots and coefficients, `F_Y_x` and `F_Y_c`,
     which `load.arrays()` has; what they are over, periods and whether the way inward has a table of its own
     are the scene's (numba, c, octave, javascript).
@@ -80,8 +77,8 @@ def compile(
     See docs/choose.md: which call for which question.
     """
     place = as_path("path", path)
-    yes_or_no(libm=libm, check=check, overwrite=overwrite, float=float)
-    form = Form(not libm, float, are_open(tables))
+    yes_or_no(check=check, overwrite=overwrite)
+    form = Form(are_open(tables))
     made = generated(scene if isinstance(scene, Scene) else scene_of(scene), place, to, form, fmi, input)
     if not check:
         made.write(overwrite)
@@ -108,12 +105,8 @@ def require_fmu(place: Path, form: Form) -> None:
     """ValueError for the place of an FMU that is not NAME.fmu, and for an option that it does not have."""
     if place.suffix != ".fmu":
         raise ValueError(f"{printable(place)}: the file of an FMU is called NAME.fmu")
-    if form.freestanding:
-        raise ValueError("libm=False is for c: an FMU is compiled with the C library")
     if form.open_tables:
         raise ValueError(f"{TABLES} is for {those_with('open_tables')}: the tables of an FMU are frozen")
-    if form.single:
-        raise ValueError("float=True (--float) is for c: the numbers of an FMU are doubles")
     require_name(place.stem, place, words_of("c").modules)
 
 
@@ -130,20 +123,10 @@ def generated(
 
 def _generated(scene: Scene, place: Path, to: str, form: Form) -> Generated:
     language = language_of(to, "fmu")
-    if form.freestanding and not language.own_functions:
-        raise ValueError(
-            f"libm=False is for {those_with('own_functions')}: {to} has its elementary functions at hand"
-        )
-    if form.single and not language.single:
-        raise ValueError(
-            f"float=True (--float) is for {those_with('single')}: {to} is not written in single precision"
-        )
     if form.open_tables and not language.open_tables:
         raise ValueError(f"{TABLES} is for {those_with('open_tables')}: in {to} they are frozen")
     if form.open_tables and not any(map(callable, scene.content.inputs.values())):
         raise SceneError(f"{scene.name or 'scene'}: {TABLES}: no load of the scene is a table")
-    if scene.content.accuracy == "extended" and form.single:
-        raise SceneError('accuracy = "extended": single precision has standard alone')
     if scene.content.accuracy == "extended" and not language.extended:
         raise SceneError(f'accuracy = "extended": {to} has standard, {those_with("extended")} have both')
     words = words_of(to)
@@ -160,8 +143,7 @@ def _generated(scene: Scene, place: Path, to: str, form: Form) -> Generated:
     if not source:
         said = f'desaxe.compile(scene, "{place.name}", to="{to}"{form.keywords})'
     module = module_of(scene, Order(to, name, said, language.second_order, form))
-    texts = language.files(module, form.freestanding)
-    return Generated(folder, {file: sealed(text) for file, text in texts.items()})
+    return Generated(folder, {file: sealed(text) for file, text in language.files(module).items()})
 
 
 def lost_of(content: Content, to: str) -> list[str]:

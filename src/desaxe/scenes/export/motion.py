@@ -50,7 +50,6 @@ def has_masses(given: Mapping[str, object]) -> bool:
 def motion(
     given: Mapping[str, object],
     branch: int,
-    single: bool = False,
     loads: Mapping[str, Load] = MappingProxyType({}),
     open_tables: bool = False,
 ) -> Program:
@@ -65,8 +64,7 @@ def motion(
     rubs = numbers.get("mu") != 0.0
     fixed = {**numbers, "branch": float(branch), "alpha": 0.0, "mu": 0.0}
     names = (*SMOOTH, STATUS, *(CONTACT if rubs else ()))
-    accuracy = "single" if single else "standard"
-    base = _base(names, form_of(values), tuple(fixed.items()), accuracy, loads, open_tables)
+    base = _base(names, form_of(values), tuple(fixed.items()), loads, open_tables)
     law = read_function(RUBBING if rubs else FREE)
     parts = dict(zip((*SMOOTH, STATUS, *CONTACT), base.outputs, strict=False))
     law = renamed(law, parts | {line.name: f"_{line.name}" for line in law.lines})
@@ -80,7 +78,7 @@ def motion(
     lines, outputs = (*base.lines, *law.lines, *status), ("_acceleration", "told")
     whole = Program(tuple(inputs), lines, outputs, base.notes)
     held = {"mu": numbers["mu"]} if rubs and "mu" in numbers else {}
-    program = optimise(whole, held, single=single)
+    program = optimise(whole, held)
     return guard_inputs(program, [name for name in program.inputs if name != "way"], LEAST, {})
 
 
@@ -88,17 +86,16 @@ def _base(
     names: tuple[str, ...],
     form: Variant,
     fixed: tuple[tuple[str, float], ...],
-    accuracy: str,
     loads: Mapping[str, Load],
     open_tables: bool,
 ) -> Program:
     """The program of names of the motion, under loads with `way`."""
     if not loads:
-        return specialise(names, form, fixed, accuracy)
+        return specialise(names, form, fixed)
     public = tuple(name for name in names if name != "lean")
     plan = plan_of(public, loads, True, public != names)
     every = tuple(dict.fromkeys((*names, *plan.names, *plan.motion)))
-    base = specialise(every, form, fixed, accuracy)
+    base = specialise(every, form, fixed)
     lines = [line_of(name, load, open_tables) for name, load in plan.loads.items()]
     of_all = {total.name: total for total in totals_of(plan)}
     totals = [of_all.get(name, Total(name)) for name in names]
@@ -106,7 +103,7 @@ def _base(
 
 
 def motion_solver(
-    given: Mapping[str, object], branch: int, single: bool, loads: Mapping[str, Load], open_tables: bool
+    given: Mapping[str, object], branch: int, loads: Mapping[str, Load], open_tables: bool
 ) -> Solver:
     """The acceleration as a function of its own arguments and those of a module."""
     told = (
@@ -116,5 +113,5 @@ def motion_solver(
         ("1", "sign of the speed"),
     )
     own = zip(("torque", "theta", "omega", "way"), told, strict=True)
-    law = motion(given, branch, single, loads, open_tables)
+    law = motion(given, branch, loads, open_tables)
     return Solver(tuple(Symbol(name, *each) for name, each in own), law)

@@ -1,12 +1,10 @@
 """A scene as a `Module` that any language can write: numbers folded in, lists and ranges as arguments."""
 
 from collections.abc import Iterable, Mapping
-from math import isinf
 from textwrap import wrap
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from ...compiler.interpret import to_single
 from ...compiler.languages.protocol import Forms, Module, Symbol
 from ...compiler.passes.double_double import double_double
 from ...compiler.passes.guard import guard_inputs
@@ -15,7 +13,7 @@ from ...loads.lines import line_of, totals_of
 from ...loads.load import Load
 from ...loads.resolve import plan_of, split
 from ...mechanism.catalogue import law_name, quantities, quantity
-from ...mechanism.constants import constants, double_constants, single_constants
+from ...mechanism.constants import constants, double_constants
 from ...mechanism.inputs import INPUTS, LEAST
 from ...mechanism.load_lines import Total, TurningSense, with_totals
 from ...mechanism.names import LENGTHS, ORDER, sensitivity
@@ -45,26 +43,20 @@ WITHOUT_VALUE = (
 )
 
 
-_OPTIONS = " --no-libm", " --float", " --tables arguments"
-_KEYWORDS = ", libm=False", ", float=True", ', tables="arguments"'
-
-
 class Form(NamedTuple):
-    """The options of a written module: without libm, in single precision, with tables as arguments."""
+    """The option of a written module: tables as arguments."""
 
-    freestanding: bool = False
-    single: bool = False
     open_tables: bool = False
 
     @property
     def options(self) -> str:
         """The options as the command line has them."""
-        return "".join(text for text, chosen in zip(_OPTIONS, self, strict=True) if chosen)
+        return " --tables arguments" * self.open_tables
 
     @property
     def keywords(self) -> str:
         """The options as `compile` has them."""
-        return "".join(text for text, chosen in zip(_KEYWORDS, self, strict=True) if chosen)
+        return ', tables="arguments"' * self.open_tables
 
 
 PLAIN = Form()
@@ -119,38 +111,22 @@ def module_of(scene: Scene, order: Order) -> Module:
     loads = split(content.inputs)[1]
     require_tables(scene.name or "scene", loads)
     asked = asked_of(content, (*content.outputs, "status"), order.form.open_tables)
-    if order.form.single:
-        asked = asked._replace(fixed=_in_single(scene, asked.fixed))
     fixed, state = asked.fixed, asked.request.form.state
     arguments = [n for n in ORDER if isinstance(content.inputs.get(n), tuple)]
-    forms = _forms(asked, order)
+    forms = _forms(asked)
     inputs = tuple(Symbol(n, INPUTS[n].unit, INPUTS[n].meaning) for n in arguments)
     outputs = tuple(Symbol(*quantity(name, state)) for name in content.outputs)
     derivatives, values = _derivatives(content, arguments) if order.second_order else ({}, {})
-    head = (*heading(scene, order.command), *_facts(content, asked, arguments, order))
+    head = (*heading(scene, order.command), *_facts(content, asked))
     own = own_axes(content, content.outputs)
     given = content.inputs | {n: value for n, value in fixed if n in content.inputs}
     moves = None
     if has_masses(given):
-        moves = motion_solver(given, content.branch, order.form.single, loads, order.form.open_tables)
+        moves = motion_solver(given, content.branch, loads, order.form.open_tables)
     used = {*asked.loads, *(tables_in(moves.solve) if moves else ())}
     tables = tables_of({n: load for n, load in loads.items() if n in used}, order.form.open_tables)
-    single = order.form.single
-    told = (derivatives, values, solvers(dict(fixed), single), own, moves, single, *tables)
-    turning = single_constants() if single else constants()
-    return Module(order.name, head, inputs, outputs, forms, turning, *told)
-
-
-def _in_single(scene: Scene, fixed: Fixed) -> Fixed:
-    """The fixed inputs in single precision; SceneError for one beyond it."""
-    rounded = {name: to_single(value) for name, value in fixed}
-    for name, value in fixed:
-        if isinf(rounded[name]) or (rounded[name] == 0.0 != value):
-            raise SceneError(
-                f"{scene.name or 'scene'}: {name} = {value!r}: in single precision numbers lie between "
-                "1.4e-45 and 3.4e38"
-            )
-    return tuple(rounded.items())
+    told = (derivatives, values, solvers(dict(fixed)), own, moves, *tables)
+    return Module(order.name, head, inputs, outputs, forms, constants(), *told)
 
 
 def require_outputs(scene: Scene) -> None:
@@ -180,9 +156,7 @@ def heading(scene: Scene, command: str) -> tuple[str, ...]:
     )
 
 
-def _facts(
-    content: Content, asked: PortableRequest, arguments: Iterable[str], order: Order
-) -> tuple[str, ...]:
+def _facts(content: Content, asked: PortableRequest) -> tuple[str, ...]:
     """Accuracy, frame, what is folded in and what is left out."""
     fixed = {n: value for n, value in asked.fixed if n in INPUTS}
     numbers = [f"{n} = {value!r} {INPUTS[n].unit}".removesuffix(" 1") for n, value in fixed.items()]
@@ -195,12 +169,6 @@ def _facts(
         "Y points along the slider axis towards the slider,",
         f"theta turns from +Y towards +X. {motion}; branch {branch:+.0f}.",
     ]
-    if order.form.single:
-        lines.append("Single precision: inputs are rounded to float, values are those of the rounded inputs.")
-    if order.form.freestanding:
-        lines.append(
-            f"Without libm: |theta| is at most {_reach(asked.request, order):.0f} rad, else the status is 4."
-        )
     if asked.open:
         names = ", ".join(asked.loads)
         lines.append(f"Tables are arguments: {names}. In desaxe load.arrays() has knots and coefficients.")
@@ -208,12 +176,6 @@ def _facts(
     lost = left_out(content)
     lines += [f"Not in here (`desaxe run` has it): {', '.join(lost)}."] if lost else []
     return ("", *lines, "", *WITHOUT_VALUE)
-
-
-def _reach(asked: Request, order: Order) -> float:
-    if order.form.single:
-        return single_constants().limit
-    return double_constants().limit if asked.accuracy == "extended" else constants().limit
 
 
 def asked_of(content: Content, names: Iterable[str], open_tables: bool = False) -> PortableRequest:
@@ -241,21 +203,19 @@ def _way(given: Mapping[str, Any]) -> TurningSense:
     return TurningSense(own["omega0"])
 
 
-def _forms(asked: PortableRequest, order: Order) -> Forms:
+def _forms(asked: PortableRequest) -> Forms:
     """The Programs of the names, the status among them, in the forms that the accuracy has."""
     kept = asked.request.accuracy
     status = asked.shown.index("status")
-    bounded = order.form.freestanding or kept == "extended"
-    largest = {"theta": _reach(asked.request, order)} if bounded else {}
-    accuracy = "single" if order.form.single else kept
-    stable = asked.stable(accuracy)
+    largest = {"theta": double_constants().limit} if kept == "extended" else {}
+    stable = asked.stable(kept)
     guarded = guard_inputs(stable, stable.inputs, LEAST, largest)
     if kept == "extended":
         return Forms(status, double_double(guarded, double_constants()))
-    plain = asked.program(accuracy, plain=True)
+    plain = asked.program(kept, plain=True)
     if plain is None:
         return Forms(status, guarded)
-    test = specialise(("wide_margins",), asked.request.form, asked.fixed, accuracy)
+    test = specialise(("wide_margins",), asked.request.form, asked.fixed, kept)
     # The test implies valid lengths.
     own = [name for name in plain.inputs if name not in LENGTHS]
     bare = guard_inputs(plain, own, LEAST, largest)

@@ -20,18 +20,18 @@ from ...runtime.specialise import specialise
 SLOPES = ("Y_wrt_theta", "Y_wrt_theta_theta")
 
 
-def solvers(fixed: Mapping[str, float], single: bool = False) -> dict[str, Solver]:
-    """The solvers of a mechanism of which some inputs are fixed, perhaps in single precision."""
+def solvers(fixed: Mapping[str, float]) -> dict[str, Solver]:
+    """The solvers of a mechanism of which some inputs are fixed."""
     kinematic = tuple((name, value) for name, value in fixed.items() if name in ("branch", "ec", "AB", "BC"))
     slider = tuple(Symbol(row.name, row.unit, row.meaning) for row in SLIDER_INPUTS.values())
-    slopes = specialise(SLOPES, Variant(), kinematic, "single" if single else "standard")
+    slopes = specialise(SLOPES, Variant(), kinematic)
     return {
-        "inverse": Solver(slider, _cut(INVERSE, fixed, single), slopes),
-        "limits": Solver((), _cut(LIMITS, fixed, single, (*ANGLES, "status"))),
+        "inverse": Solver(slider, _cut(INVERSE, fixed), slopes),
+        "limits": Solver((), _cut(LIMITS, fixed, (*ANGLES, "status"))),
     }
 
 
-def _cut(text: str, fixed: Mapping[str, float], single: bool, outputs: tuple[str, ...] = ()) -> Program:
+def _cut(text: str, fixed: Mapping[str, float], outputs: tuple[str, ...] = ()) -> Program:
     """The program with fixed inputs folded in; invalid arguments give NaN and status 4."""
-    program = optimise(closed_form(text, outputs).program, fixed, single=single)
+    program = optimise(closed_form(text, outputs).program, fixed)
     return guard_inputs(program, program.inputs, LEAST, {})

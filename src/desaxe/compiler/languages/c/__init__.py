@@ -4,8 +4,7 @@ language   the two files
 functions  a Program as a static function, and the calls between them
 steps      the motion under a torque, step by step
 tables     tables that are arguments: parameters, checks, and a table from points
-single     the texts in single precision
-helpers    what the spellings call, and elementary functions for where there is no libm: the .c files here
+helpers    what the spellings call: the .c files here
 motion/    the C of `steps`
 """
 

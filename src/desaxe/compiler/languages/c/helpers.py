@@ -15,7 +15,3 @@ def _text(name: str) -> str:
 PRAGMAS = _text("pragmas.c")  # contraction is switched off as each compiler wants it
 CPLUSPLUS = _text("cplusplus.c")  # C++ compiles the file, too, but for a word
 HELPERS = functions_in(_text("helpers.c"))
-# Where there is no libm. The bits of a double are read through a union, which C99 allows.
-FREESTANDING, FREESTANDING_HYPOT = _text("freestanding.c"), _text("freestanding_hypot.c")
-# After the written-out sine and cosine, on which it is built.
-FREESTANDING_ATAN2 = _text("freestanding_atan2.c")

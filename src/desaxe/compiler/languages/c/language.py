@@ -10,8 +10,7 @@ from ..protocol import Language, Module, Solver, Symbol
 from ..shared import arrays_of, called, numbers, one_line, with_helpers
 from ..tables import described, numbers_of
 from .functions import Lifted, lifted, static_function
-from .helpers import CPLUSPLUS, FREESTANDING, FREESTANDING_ATAN2, FREESTANDING_HYPOT, HELPERS, PRAGMAS
-from .single import in_single, of_format
+from .helpers import CPLUSPLUS, HELPERS, PRAGMAS
 from .steps import HEADER, step_texts
 from .tables import checks, parameters, passed, table_comment, table_function, table_signature
 
@@ -24,17 +23,11 @@ class C(Language):
     name = "c"
     suffix = ".c"
     about = "FOLDER/name.h and name.c, C99, named as the folder"
-    own_functions = True
-    single = True
     open_tables = True
 
-    def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
+    def files(self, module: Module) -> dict[str, str]:
         """`name.h` and `name.c`."""
-        texts = {
-            f"{module.name}.h": _header(module),
-            f"{module.name}.c": _Source(module, freestanding).text(),
-        }
-        return {file: in_single(text) for file, text in texts.items()} if module.single else texts
+        return {f"{module.name}.h": _header(module), f"{module.name}.c": _Source(module).text()}
 
 
 # ---- the header ----------------------------------------------------------------------------------
@@ -152,9 +145,8 @@ def comment(lines: Iterable[str]) -> str:
 class _Source:
     """Writes the parts of the source and puts them together."""
 
-    def __init__(self, module: Module, freestanding: bool) -> None:
+    def __init__(self, module: Module) -> None:
         self.module = module
-        self.freestanding = freestanding
         forms = module.forms
         self.stable = lifted(forms.stable)
         self.plain = lifted(forms.plain) if forms.plain else None
@@ -175,7 +167,7 @@ class _Source:
         """The text of the whole file."""
         name, motion = self.module.name, self.module.motion
         opened = self.module.open_tables
-        steps = [] if motion is None else self._of_format(step_texts(name, motion, self.names, opened))
+        steps = [] if motion is None else step_texts(name, motion, self.names, opened)
         filled = [table_function(name, table, one) for table, one in opened.items()]
         functions = "\n".join(
             [*self._forms(), self._point(), self._array(), *self._solvers(), *steps, *filled]
@@ -188,8 +180,8 @@ class _Source:
             [
                 comment(self.module.head),
                 f'#include "{name}.h"',
-                *([] if self.freestanding else ["#include <math.h>"]),
-                *(["#include <stdint.h>"] if self.freestanding or self.module.tables or opened else []),
+                "#include <math.h>",
+                *(["#include <stdint.h>"] if self.module.tables or opened else []),
                 "",
                 CPLUSPLUS,
                 PRAGMAS,
@@ -212,36 +204,8 @@ class _Source:
     # -- what is called --
 
     def _helpers(self, functions: str) -> list[str]:
-        angles = self._angles(functions)
-        atan2 = self.freestanding and bool(called(functions, ["atan2"]))
-        found = [FREESTANDING] if self.freestanding else []
-        if self.freestanding:
-            missing = called(functions, ["exp", "log", "pow"])
-            if missing:
-                raise ValueError(f"c without libm has no {', '.join(missing)}: compile with libm")
-            found += [FREESTANDING_HYPOT] if called(functions, ["hypot"]) else []
-        found += with_helpers("\n".join([*angles, functions]), HELPERS)
-        inverse = self._of_format([FREESTANDING_ATAN2] if atan2 else [])
-        return [*self._of_format(found), *angles[:1], *inverse, *angles[1:]]
-
-    def _of_format(self, texts: list[str]) -> list[str]:
-        return [*map(of_format, texts)] if self.module.single else texts
-
-    def _angles(self, functions: str) -> list[str]:
-        """Sine and cosine: written out up to the limit, beyond it those of libm where there is one."""
-        atan2 = self.freestanding and bool(called(functions, ["atan2"]))
-        alone = called(functions, ["sin", "cos"]) if self.freestanding else []
-        turning = bool(alone or called(functions, ["sin_cos"]))
-        sources = [_near_sin_cos(self.module.constants)] if atan2 or turning else []
-        if turning:
-            sources.append(_sin_cos(repr(self.module.constants.limit), self.freestanding))
-        for function, place in (("sin", 0), ("cos", 1)):
-            if function in alone:
-                sources.append(
-                    f"static double own_{function}(double x) {{\n  double turn[2];\n  sin_cos(x, turn);\n"
-                    f"  return turn[{place}];\n}}\n#define {function} own_{function}\n"
-                )
-        return sources
+        angles = [sine_and_cosine(self.module.constants)] if called(functions, ["sin_cos"]) else []
+        return [*with_helpers("\n".join([*angles, functions]), HELPERS), *angles]
 
     # -- the forms --
 
@@ -405,7 +369,7 @@ def _loop(call: str, given: str, results: list[str], indent: int, last: list[str
 
 def sine_and_cosine(constants: Trigonometry) -> str:
     """`sin_cos(x, out)`, with what it calls, by libm beyond the limit."""
-    return f"{_near_sin_cos(constants)}\n{_sin_cos(repr(constants.limit), False)}"
+    return f"{_near_sin_cos(constants)}\n{_sin_cos(repr(constants.limit))}"
 
 
 def _near_sin_cos(constants: Trigonometry) -> str:
@@ -416,19 +380,17 @@ def _near_sin_cos(constants: Trigonometry) -> str:
     return static_function("near_sin_cos", value_numbering(program), ["x"], 2, None, comment)
 
 
-def _sin_cos(limit: str, freestanding: bool) -> str:
+def _sin_cos(limit: str) -> str:
     """`sin_cos(x, out)`: the same for any angle."""
-    ahead = "where there is none" if freestanding else "from libm"
-    sine, cosine = ("NAN", "NAN") if freestanding else ("sin(x)", "cos(x)")
     return "\n".join(
         [
-            f"/* The same; beyond the angles that the polynomials' reduction keeps exact, {ahead}. */",
+            "/* The same; beyond the angles that the polynomials' reduction keeps exact, from libm. */",
             "static void sin_cos(double x, double out[]) {",
             f"  if (fabs(x) <= {limit}) {{",
             "    near_sin_cos(x, out);",
             "  } else {",
-            f"    out[0] = {sine};",
-            f"    out[1] = {cosine};",
+            "    out[0] = sin(x);",
+            "    out[1] = cos(x);",
             "  }",
             "}",
             "",

@@ -39,7 +39,7 @@ class Numba(Language):
     open_tables = True
     loops = staticmethod(emit_numba)
 
-    def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
+    def files(self, module: Module) -> dict[str, str]:
         """`name.py`: for each result a function of its own."""
         scalars = [(one, module.values[one.name], module.taken(one.name)) for one in module.outputs]
         parts = scalar_parts(scalars)
