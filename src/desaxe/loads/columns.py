@@ -6,10 +6,9 @@ from typing import Any, NamedTuple
 
 from ..support.forks import IMPORTS
 from ..support.shown import shown
-from ..units.parse import in_unit
-from ..units.pint_units import registry
+from ..units.parse import in_unit, parse_unit
 from ..units.scaling import by_digits
-from ..units.system import Conversion
+from ..units.system import Conversion, conversion
 from ..units.text import plain_number
 
 UNORDERED = (str, bytes, bytearray, memoryview, Set, Mapping)  # or no numbers, though they can be iterated
@@ -36,7 +35,9 @@ def column_of(what: str, given: Any, units: tuple[str, ...], own: Conversion | N
     if said in units:
         return Column(_finite(what, given.values.tolist()), said)
     if said is not None:
-        given = registry().Quantity(given.values, said)
+        unit = _same_kind(str(said), units)
+        values = conversion(what, str(said), unit).to_si(given.values)
+        return Column(_finite(what, values.tolist()), unit)
     if hasattr(given, "magnitude"):
         unit, found = _first_that_fits(what, given, units)
         return Column(_finite(what, found.tolist()), unit)
@@ -69,6 +70,14 @@ def _with_unit(what: str, value: Any, units: tuple[str, ...]) -> tuple[str | Non
     if hasattr(value, "magnitude") or (isinstance(value, str) and plain_number(value) is None):
         return _first_that_fits(what, value, units)
     return None, value
+
+
+def _same_kind(unit: str, units: tuple[str, ...]) -> str:
+    """The first of some SI units that measures the same as a unit; the last of them without any."""
+    try:
+        return next((si for si in units if parse_unit(si).si == parse_unit(unit).si), units[-1])
+    except ValueError:
+        return units[-1]
 
 
 def _first_that_fits(what: str, value: Any, units: tuple[str, ...]) -> tuple[str, Any]:
