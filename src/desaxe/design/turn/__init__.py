@@ -1,6 +1,7 @@
 """Quantities over one whole cycle of a design.
 
-turn           the design, checked: its quantities at equal steps and in panels
+cycle          designs in panels between edges, and how jumps move
+turn           one design, checked
 harmonics      Fourier series at constant speed
 counterweight  balancing of the shaking force
 """
