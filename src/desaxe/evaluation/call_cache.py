@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.inputs import is_good
+from ..mechanism.inputs import SAFE, is_good
 from ..mechanism.names import LENGTHS
 from ..runtime.executor import CompiledKernel, is_ready, kernel_for
 from ..runtime.kernels import key_of
@@ -21,12 +21,13 @@ from ..runtime.specialise import plain_form
 from ..runtime.threads import LONGEST_BLOCK, least_of, run_parts
 from ..runtime.wide_margins import of_numbers
 from ..support.memory import require
-from .extremes import LEAST, is_extreme
-from .extremes import MOST as LARGEST
 
 Array = NDArray[Any]
 FLOAT, STATUS = np.dtype(np.float64), np.dtype(np.int8)
 SMALL = 20_000  # points: so few are run at once, and again if some are left over
+
+
+LEAST, LARGEST = SAFE
 
 
 class _Call(NamedTuple):
@@ -68,7 +69,7 @@ def planned(
         ):
             value = float(value)
         if type(value) is float:
-            if not (LEAST < value < LARGEST or _is_ordinary(name, value)):
+            if not (LEAST < value < LARGEST or is_good(name, value)):
                 return None
             numbers[name] = value
             kinds.append(value == 0.0)
@@ -84,7 +85,7 @@ def planned(
             elif value.shape != shape:
                 return None
             first = value.item(0)
-            if not (LEAST < first < LARGEST or _is_ordinary(name, first)):
+            if not (LEAST < first < LARGEST or is_good(name, first)):
                 return None
             columns[name] = value
             kinds.append(None)
@@ -98,11 +99,6 @@ def planned(
     if plan is None:
         return None
     return _run(plan, numbers, columns, shape, out, threads)
-
-
-def _is_ordinary(name: str, value: float) -> bool:
-    """True for a valid number that is not near the ends of the double range."""
-    return is_good(name, value) and not is_extreme(name, value)
 
 
 def _all_wide(test: Callable[..., Any], numbers: Mapping[str, float]) -> bool:

@@ -7,14 +7,13 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import Any
 
-from ..mechanism.inputs import is_good
+from ..mechanism.inputs import SAFE, is_good
 from ..mechanism.own import register
 from ..runtime.accuracy import accuracy_of
 from ..runtime.point import PointFunction, point_of
 from ..runtime.request import Request, as_number, check_common, is_steady, request, several, standstill
 from ..support.forks import IMPORTS
 from ..support.interrupts import import_whole
-from .extremes import LEAST, MOST, can_rescale, in_si, is_extreme, rescaled
 
 
 def values(
@@ -48,7 +47,7 @@ def values(
         asked = request(wanted, given, branch, accuracy, now)
         _KNOWN[key] = known = asked, point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
     asked, point = known
-    numbers, extreme = [], False
+    numbers = []
     for name in point.inputs:
         value = given[name]
         if type(value) is not float or not LEAST < value < MOST:
@@ -59,24 +58,14 @@ def values(
             if value is None:  # not a number: an array
                 answers = (of_arrays or _of_arrays)(asked, point.inputs, given, threads, out)
                 return answers[names] if isinstance(names, str) else answers
-            extreme = extreme or is_extreme(name, value)
         numbers.append(value)
     if out is not None:
         raise TypeError("out= is for arrays, but every input is a number")
-    answer = point.function(*numbers) if not extreme else _extreme(asked, point, numbers)
+    answer = point.function(*numbers)
     return answer[0] if isinstance(names, str) else dict(zip(wanted, answer, strict=True))
 
 
-def _extreme(asked: Request, point: PointFunction, numbers: Sequence[float]) -> Sequence[Any]:
-    """The answer of a point near the ends of the double range."""
-    if not can_rescale(asked):
-        return point.function(*numbers)
-    inputs, powers = rescaled(dict(zip(point.inputs, numbers, strict=True)))
-    answer = point.function(*map(float, inputs.values()))
-    found = in_si(asked.shown, answer, powers, asked.form.state)
-    return [float(a) if type(b) is float else b for a, b in zip(found, answer, strict=True)]
-
-
+LEAST, MOST = SAFE
 MOST_KNOWN = 1024  # requests that are remembered
 _KNOWN: dict[tuple[Any, ...], tuple[Request, PointFunction]] = {}
 

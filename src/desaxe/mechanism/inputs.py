@@ -105,7 +105,11 @@ INPUTS = {
         ),
     ),
 }  # fmt: skip
-SAFE = 1e-100, 1e100  # magnitudes between which nothing overflows, nor underflows to a wrong value
+# Magnitudes between which nothing overflows, nor underflows to a wrong value. The least is that of the rod;
+# what is much smaller vanishes beside it.
+SAFE = 1e-60, 1e60
+RANGE = "it must be of a magnitude of at most 1e+60"
+RANGE_OF_ROD = "it must be a length from 1e-60 to 1e+60 m"
 LEAST = {name: row.least for name, row in INPUTS.items() if row.least is not None}
 
 
@@ -117,4 +121,17 @@ def names_in(*sections: str) -> tuple[str, ...]:
 def is_good(name: str, value: float) -> bool:
     """True for a valid value of this input."""
     least = INPUTS[name].least
-    return -inf < value < inf and (least is None or least <= value)
+    return -inf < value < inf and (least is None or least <= value) and not is_beyond(name, value)
+
+
+def is_beyond(name: str, value: float) -> bool:
+    """True for a finite number whose products would overflow, or vanish; an angle has no range."""
+    least, most = SAFE
+    return (name != "theta" and most < abs(value) < inf) or (name == "BC" and 0.0 < value < least)
+
+
+def limit_of(name: str, value: float) -> str:
+    """The limit of an input that a bad value exceeds, in words."""
+    if is_beyond(name, value):
+        return RANGE_OF_ROD if name == "BC" else RANGE
+    return f"it must be {INPUTS[name].limit}"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..support.forks import IMPORTS
 from ..support.shown import shown
-from .inputs import Input
+from .inputs import INPUTS, Input, is_beyond, limit_of
 from .spoken import named
 
 if TYPE_CHECKING:
@@ -34,6 +34,8 @@ def number_of(row: Input, value: Any, system: "UnitSystem | None" = None) -> flo
         raise ValueError(f"{row.name} = {shown(value)}: it must be {row.limit}, at most 1.8e308") from None
     if not (-inf < number < inf and (row.least is None or row.least <= number)):
         raise ValueError(f"{named(row.name, value)}: it must be {row.limit}")
+    if row.name in INPUTS and is_beyond(row.name, number):
+        raise ValueError(f"{named(row.name, value)}: {limit_of(row.name, number)}")
     return number
 
 

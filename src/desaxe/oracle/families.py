@@ -247,10 +247,10 @@ def nearly_stalled(rng: Rng) -> Point:
 
 
 def units(rng: Rng) -> Point:
-    """Another family's point, in units of length and of time from 2^-400 to 2^400."""
+    """Another family's point, in units of length from 2^-180 to 2^180, of time from 2^-90 to 2^90."""
     family = rng.choice([f for f in PLAIN if f is not units])
     at = family(rng)
-    length, rate = rng.randint(-400, 400), rng.randint(-400, 400)
+    length, rate = rng.randint(-180, 180), rng.randint(-90, 90)
     kind = rng.randrange(4)
     length, rate = (length, 0) if kind == 0 else (0, rate) if kind == 1 else (length, rate)
     return rescaled(at, length, rate)

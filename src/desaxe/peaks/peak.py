@@ -15,12 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape
-from ..evaluation.extremes import Powers, are_extreme, can_rescale, rescaled, scaled, shift
 from ..evaluation.under_loads.loaded import loads_of
 from ..loads.angles import cycle
 from ..loads.load import LoadWarning
 from ..loads.resolve import VARIABLE
-from ..mechanism.catalogue import quantity
 from ..mechanism.closed import TURN
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs
@@ -109,21 +107,8 @@ def peak(
     shape = broadcast_shape(arrays)
     columns = {n: _flat(a, shape) for n, a in arrays.items()}
     search = search_of(plan, arrays, ends)
-    powers = None
-    if not varying and can_rescale(plan.wanted) and any(np.any(are_extreme(n, c)) for n, c in arrays.items()):
-        columns, powers = rescaled(columns)
     found = peaks_of_designs(sought, search, columns)
-    if powers is not None:
-        _to_si(found, name, powers, omega is not None)
     return Answer(_shaped(found, shape), partial(units_of_extreme, name), PeakStatus)
-
-
-def _to_si(found: dict[str, Any], name: str, powers: Powers, state: bool) -> None:
-    """Replace value and gradient, in the units of `rescaled`, by those in SI units."""
-    unit = shift(quantity(name, state).unit, powers)
-    found["value"] = scaled(found["value"], -unit)
-    for parameter, slope in found["gradient"].items():
-        found["gradient"][parameter] = scaled(slope, shift(INPUTS[parameter].unit, powers) - unit)
 
 
 def _range(theta: Any, name: str) -> tuple[float, float]:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
 from ..mechanism.constants import double_constants
-from ..mechanism.inputs import INPUTS
+from ..mechanism.inputs import INPUTS, SAFE
 from .kernels import KernelKey
 from .point import point_of
 
@@ -19,7 +19,19 @@ def are_good(name: str, array: Array) -> NDArray[np.bool_]:
     """Mask of the elements that are valid values of an input."""
     least = INPUTS[name].least
     good: NDArray[np.bool_] = np.isfinite(array)
-    return good if least is None else good & (array >= least)
+    good = good if least is None else good & (array >= least)
+    return good & ~are_beyond(name, array)
+
+
+def are_beyond(name: str, array: Array) -> NDArray[np.bool_]:
+    """Mask of the elements that `is_beyond` holds for."""
+    least, most = SAFE
+    beyond: NDArray[np.bool_] = np.zeros(array.shape, np.bool_)
+    if name != "theta" and array.size and not (array.min() >= -most and array.max() <= most):
+        beyond = (np.abs(array) > most) & np.isfinite(array)
+    if name == "BC" and array.size and not array.min() >= least:
+        beyond = beyond | ((array > 0.0) & (array < least))
+    return beyond
 
 
 def fill_by_points(

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from ...evaluation.extremes import check_range
 from ...loads.resolve import VARIABLE
 from ...mechanism.inputs import TINY, Input
 from ...mechanism.keywords import with_known_keywords
@@ -22,7 +21,7 @@ from ...mechanism.read import read
 from ...support.answer import Answer
 from ...support.panels import RESOLVED, Array, resolved
 from ...support.shown import shown
-from .turn import Turn, one_turn
+from .turn import Turn, check_range, one_turn
 
 ALONG = {"both": 0.0, "Y": 1.0, "X": -1.0}
 FORCES = ("F_shaking_X", "F_shaking_Y")

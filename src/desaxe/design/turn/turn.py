@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from ...evaluation.extremes import check_range
 from ...evaluation.under_loads.loaded import loads_of
 from ...loads.angles import turns_of
 from ...loads.resolve import VARIABLE
@@ -14,13 +13,14 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.keywords import check_inputs
 from ...mechanism.names import LENGTHS
 from ...mechanism.read import read
-from ...mechanism.spoken import spoken
+from ...mechanism.spoken import named, spoken
 from ...mechanism.status import PointStatus
 from ...runtime.request import as_number, check_common, is_steady, request
 from ...support.computed import computed_once
 from ...support.panels import Array
 from .cycle import MOST_TURNS, Cycle, Motion
 
+WIDEST = 1e30  # of magnitudes: sums of products of several inputs lose their digits beyond
 CREEP = 1e-100  # rad/s: friction and loads have their way, inertia does nothing; a torque below it is none
 JAMS = int(PointStatus.NO_FORCE_BALANCE)
 
@@ -121,3 +121,11 @@ def _number(caller: str, name: str, value: Any) -> float:
     each = f"[desaxe.{caller}({name}=value, ...) for value in values]"
     one = f"one number{more}, for one design; call it for each of them, as in {each}"
     return check_range(caller, name, read(INPUTS[name], value, caller, one))
+
+
+def check_range(caller: str, name: str, number: float) -> float:
+    """The number; ValueError beyond WIDEST."""
+    if name != "theta" and number != 0.0 and not 1.0 / WIDEST <= abs(number) <= WIDEST:
+        limit = f"{caller} takes 0 and magnitudes from {1.0 / WIDEST:g} to {WIDEST:g}"
+        raise ValueError(f"{named(name, number, 'g')}: {limit}")
+    return number

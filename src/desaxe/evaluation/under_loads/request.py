@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from ...loads.lines import line_of, totals_of
 from ...loads.load import Load, OverTheta, OverY
 from ...loads.resolve import LoadPlan
+from ...mechanism.inputs import SAFE
 from ...mechanism.load_lines import LoadLines, TurningSense, Under
+from ...runtime.interpreted import are_beyond
 from ...runtime.request import Request, request
-from ..extremes import MOST, are_extreme
 
 Array = NDArray[Any]
 
@@ -51,5 +52,5 @@ def table_arrays(loads: Mapping[str, Load]) -> dict[str, Array]:
 
 def are_extreme_under(loads: Mapping[str, Load], axes: Mapping[str, Array]) -> bool:
     """True where an input, or a load, is near the ends of the double range."""
-    large = (load.largest > MOST for load in loads.values() if isinstance(load, OverY))
-    return any(large) or any(are_extreme(n, a) is not False for n, a in axes.items())
+    large = (load.largest > SAFE[1] for load in loads.values() if isinstance(load, OverY))
+    return any(large) or any(are_beyond(n, a).any() for n, a in axes.items())
