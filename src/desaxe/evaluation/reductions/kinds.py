@@ -41,27 +41,30 @@ class Average(NamedTuple):
     combines: bool = False
 
 
-def compensated_sum(rows: Array) -> Array:
-    """The sum of each row by halves, with what rounding takes of it; infinite where a value is."""
-    error = np.zeros(rows.shape[:-1])
-    while rows.shape[-1] > 1:
-        half = rows.shape[-1] // 2
-        first, second = rows[..., :half], rows[..., half : 2 * half]
-        total = first + second
-        of_second = total - first
-        error += ((first - (total - of_second)) + (second - of_second)).sum(axis=-1)
-        rows = np.append(total, rows[..., -1:], axis=-1) if rows.shape[-1] % 2 else total
-    return np.where(np.isfinite(error), rows[..., 0] + error, rows[..., 0])
+def exact_sum(rows: Array) -> Array:
+    """The sum of each row, as if its rounding were that of a few operations; infinite where a value is.
+
+    Beside a power of two that is larger than the sum of magnitudes each number splits into a high part, whose
+    sum is exact, and a small rest.
+    """
+    largest = np.abs(rows).max(axis=-1, keepdims=True, initial=0.0)
+    power = np.ldexp(1.0, np.minimum(np.frexp(largest)[1] + rows.shape[-1].bit_length(), 1023))
+    high = (rows + power) - power
+    total = high.sum(axis=-1) + (rows - high).sum(axis=-1)
+    return np.asarray(np.where(np.isfinite(total), total, rows.sum(axis=-1)))
 
 
 def _mean(rows: Array, counts: Array | None) -> Array:
     if counts is None:
-        return np.asarray(compensated_sum(rows) / rows.shape[-1])
-    return np.asarray(compensated_sum(np.where(counts > 0, rows * counts, 0.0)) / counts.sum(axis=-1))
+        return np.asarray(exact_sum(rows) / rows.shape[-1])
+    return np.asarray(exact_sum(np.where(counts > 0, rows * counts, 0.0)) / counts.sum(axis=-1))
 
 
 def _scaled_root(rows: Array, counts: Array | None) -> Array:
     """The root of the mean square, of any scale: a power of two brings the squares into range."""
+    sizes = np.abs(rows).max(axis=-1, initial=0.0)
+    if ((sizes < 2.0**500) & (sizes > 2.0**-400)).all():
+        return np.asarray(np.sqrt(_mean(rows * rows, counts)))
     largest = np.nanmax(np.where(np.isinf(rows), np.nan, np.abs(rows)), axis=-1, keepdims=True)
     factor = np.ldexp(1.0, -np.frexp(np.where(largest > 0.0, largest, 1.0))[1].clip(-1000, 1000))
     return np.asarray(np.sqrt(_mean((rows * factor) ** 2, counts)) / factor[..., 0])

@@ -29,7 +29,7 @@ from .measures import AtPlace, OfDesign
 
 Array = NDArray[Any]
 FLOAT = np.dtype(np.float64)
-BLOCK = 2**15  # points whose values stay in the second-level cache
+BLOCK = 2**16  # points whose values stay in the second-level cache
 BLOCKS = 64  # of a part: an interrupt is heard after it
 
 
