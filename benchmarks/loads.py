@@ -5,7 +5,6 @@ many points of an array, the peaks of 512 designs in one call, by NumPy as in a 
 code, `tolerance` of a peak with 2,000 samples, and `optimize` of a peak over two variables.
 """
 
-import os
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -13,6 +12,7 @@ from typing import Any
 import numpy as np
 
 import desaxe as dx
+from desaxe.peaks import compiled
 
 from .rig import in_turns
 
@@ -68,10 +68,10 @@ def works(load: Any) -> dict[str, Callable[[], Any]]:
     }
 
 
-def _by(tier: str, run: Callable[[], Any]) -> None:
-    os.environ["DESAXE_TIER"] = tier
+def _by(way: str, run: Callable[[], Any]) -> None:
+    compiled.WAY = way
     run()
-    del os.environ["DESAXE_TIER"]
+    compiled.WAY = None
 
 
 def table() -> str:

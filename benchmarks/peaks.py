@@ -7,13 +7,13 @@ value, its angle, its exact gradient and status: compiled, and in NumPy, as a ca
 than compiling does while no machine code is on disk.
 """
 
-import os
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
 import desaxe as dx
+from desaxe.peaks import compiled
 
 from .formulas import lambdified
 from .rig import in_turns
@@ -38,17 +38,17 @@ def main() -> None:
     print(f"largest |a_C| of {DESIGNS} designs, one core\n\n| | ns a design | ratio |\n|---|---|---|")
     for name, seconds in best.items():
         print(f"| {name} | {seconds / DESIGNS * 1e9:.0f} | {seconds / ours:.1f} |")
-    os.environ["DESAXE_TIER"] = "compiled"
+    compiled.WAY = "compiled"
     one = {name: float(column[0]) for name, column in designs.items()}
     alone = in_turns({"one": lambda: dx.peak("a_C", **one, omega0=SPEED)}, rounds=200)["one"]
     print(f"\none design in a call: {alone * 1e6:.0f} us")
 
 
-def peaks_of(designs: Mapping[str, Any], tier: str) -> Callable[[], Any]:
+def peaks_of(designs: Mapping[str, Any], way: str) -> Callable[[], Any]:
     """The peaks by machine code, or by NumPy, as before there is any."""
 
     def run() -> Any:
-        os.environ["DESAXE_TIER"] = tier
+        compiled.WAY = way
         return dx.peak("a_C", **designs, omega0=SPEED, threads=1)
 
     return run

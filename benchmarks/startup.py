@@ -44,9 +44,9 @@ CALLS = {
 }
 
 
-def seconds(call: str, cache: str, tier: str = "") -> float:
+def seconds(call: str, cache: str) -> float:
     """Processor time of a call in a new process."""
-    environment = {**os.environ, "DESAXE_CACHE_DIR": cache, "DESAXE_TIER": tier}
+    environment = {**os.environ, "DESAXE_CACHE_DIR": cache}
     code = f"{BEFORE}{call}{AFTER}"
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=False
@@ -65,7 +65,7 @@ def measure(rounds: int) -> dict[str, dict[str, float]]:
             with tempfile.TemporaryDirectory() as empty:
                 first.append(seconds(call, empty))
         with tempfile.TemporaryDirectory() as kept:
-            seconds(call, kept, "compiled")
+            seconds(call, kept)
             second = min(seconds(call, kept) for _ in range(2 * rounds))
         found[name] = {"first": min(first), "second": second}
     return found

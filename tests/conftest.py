@@ -14,7 +14,6 @@ import random
 import shutil
 import sys
 import tempfile
-from collections import Counter
 from functools import cache
 from pathlib import Path
 
@@ -22,24 +21,11 @@ import pytest
 
 from desaxe.mechanism import own
 from desaxe.runtime import cache as _cache
-from desaxe.runtime import executor, tiers
+from desaxe.runtime import executor
 from desaxe.support.recent import Recent
 from tests.effort import VARIABLE as THOROUGH
-from tests.ways import take_way
 
 VARIABLE = "DESAXE_CACHE_DIR"
-TESTS = Path(__file__).parent
-
-
-# Rooms whose tests are about kernels; in the others NumPy answers, as it does everyone's first requests.
-KERNELS = {"compiler", "definitions", "evaluation", "generated", "loads", "runtime"}
-
-
-class Forgetful(Counter):
-    """Requests of which each is the first one."""
-
-    def __setitem__(self, key, count):
-        pass
 
 
 def pytest_addoption(parser):
@@ -152,13 +138,8 @@ def _select(config, items):
 
 
 @pytest.fixture(autouse=True)
-def nothing_left_behind(request, monkeypatch):
-    """Forget what earlier tests asked for, so that two calls of a test take the same tier, and defined."""
-    if request.path.relative_to(TESTS).parts[0] in KERNELS:
-        tiers._ASKED.clear()
-        monkeypatch.setattr(tiers, "NUMPY_PAYS", 0)
-    else:
-        monkeypatch.setattr(tiers, "_ASKED", Forgetful())
+def nothing_left_behind():
+    """Forget what a test defined."""
     yield
     own.change(lambda _: {})
 
@@ -169,11 +150,3 @@ def cold(monkeypatch, tmp_path_factory):
     empty = _cache.Folder(tmp_path_factory.mktemp("cold"), lasting=True)
     monkeypatch.setattr(_cache, "folder", lambda: empty)
     monkeypatch.setattr(executor, "_KEPT", Recent(executor.MOST_KEPT))
-    monkeypatch.delenv(tiers.VARIABLE, raising=False)
-
-
-@pytest.fixture(params=["plain", "numpy", "compiled"])
-def way(request, monkeypatch):
-    """The ways that arrays can take, whatever their size."""
-    take_way(monkeypatch, request.param)
-    return request.param

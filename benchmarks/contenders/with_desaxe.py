@@ -1,7 +1,4 @@
-"""desaxe, through `evaluate`, `function`, `grid` and `peak`, at each accuracy.
-
-Rounds measure kernels: $DESAXE_TIER keeps NumPy, which answers new requests, out of them.
-"""
+"""desaxe, through `evaluate`, `function`, `grid` and `peak`, at each accuracy."""
 
 from collections.abc import Sequence
 

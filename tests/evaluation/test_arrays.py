@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from tests.ways import POINT, SIZES, close, columns, one_by_one, take_way
+from tests.ways import POINT, SIZES, close, columns, one_by_one
 
 SEVERAL = ["status", "Y", "V_C"]
 
@@ -20,7 +20,7 @@ EMPTY_SHAPES = [((0,), ()), ((0,), (1,)), ((0, 3), (3,)), ((3, 0), (1, 1)), ((0,
 
 
 @pytest.mark.parametrize(("left", "right"), SHAPES)
-def test_arrays_broadcast(way, left, right):
+def test_arrays_broadcast(left, right):
     theta, ec = columns(*left)[0], columns(*right)[1]
     found = dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
     assert found.shape == np.broadcast_shapes(left, right)
@@ -28,7 +28,7 @@ def test_arrays_broadcast(way, left, right):
 
 
 @pytest.mark.parametrize(("left", "right"), EMPTY_SHAPES)
-def test_nothing_in_nothing_out(way, left, right):
+def test_nothing_in_nothing_out(left, right):
     found = dx.evaluate("V_C", theta=np.empty(left), ec=np.zeros(right), **SIZES)
     assert found.shape == np.broadcast_shapes(left, right)
     assert found.dtype == np.float64
@@ -81,7 +81,7 @@ LAYOUTS = {
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_any_layout_gives_the_same(way, layout):
+def test_any_layout_gives_the_same(layout):
     theta, ec = columns(4, 3)
     wanted = dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
     found = dx.evaluate("V_C", theta=LAYOUTS[layout](theta), ec=LAYOUTS[layout](ec), **SIZES)
@@ -89,7 +89,7 @@ def test_any_layout_gives_the_same(way, layout):
 
 
 @pytest.mark.parametrize("kind", [np.float32, np.float16, np.int16, np.uint8, np.longdouble])
-def test_other_numbers_are_computed_as_doubles(way, kind):
+def test_other_numbers_are_computed_as_doubles(kind):
     theta, ec = np.arange(3).astype(kind), np.zeros(3, kind)
     found = dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
     assert found.dtype == np.float64
@@ -97,7 +97,7 @@ def test_other_numbers_are_computed_as_doubles(way, kind):
     assert np.array_equal(found, wanted)
 
 
-def test_inputs_are_left_alone(way):
+def test_inputs_are_left_alone():
     theta, ec = columns(5)
     before = theta.copy(), ec.copy()
     dx.evaluate(SEVERAL, theta=theta, ec=ec, **SIZES)
@@ -112,7 +112,7 @@ def test_a_list_gives_a_dict_in_order():
     assert list(dx.evaluate(["a_C", "Y", "V_C"], **POINT)) == ["a_C", "Y", "V_C"]
 
 
-def test_a_list_of_arrays_gives_a_dict_in_order(way):
+def test_a_list_of_arrays_gives_a_dict_in_order():
     theta, ec = columns(3)
     found = dx.evaluate(tuple(SEVERAL), theta=theta, ec=ec, **SIZES)
     assert list(found) == SEVERAL
@@ -126,8 +126,7 @@ def test_a_name_may_come_twice(theta):
     assert np.array_equal(found["Y"], dx.evaluate("Y", **POINT | {"theta": theta}))
 
 
-def test_a_name_may_come_twice_from_a_kernel(monkeypatch):
-    take_way(monkeypatch, "compiled")
+def test_a_name_may_come_twice_from_a_kernel():
     theta, ec = columns(3)
     assert list(dx.evaluate([*SEVERAL, "Y"], theta=theta, ec=ec, **SIZES)) == SEVERAL
 
@@ -154,7 +153,7 @@ def test_every_name_can_be_asked_for(name):
 # ---- out= ----------------------------------------------------------------------------------------
 
 
-def test_outputs_that_share_memory_are_written_one_after_the_other(way):
+def test_outputs_that_share_memory_are_written_one_after_the_other():
     """A kernel is promised that they do not: it writes into memory of its own then."""
     theta = np.linspace(0.0, 6.0, 40)
     design = {"ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": 157.08}
@@ -165,14 +164,14 @@ def test_outputs_that_share_memory_are_written_one_after_the_other(way):
     assert np.array_equal(memory[1:], wanted["a_C"])
 
 
-def test_out_is_filled_and_returned(way):
+def test_out_is_filled_and_returned():
     theta, ec = columns(5)
     out = np.full(5, -1.0)
     assert dx.evaluate("V_C", theta=theta, ec=ec, **SIZES, out=out) is out
     assert close(out, one_by_one("V_C", theta, ec))
 
 
-def test_out_of_a_list_is_a_dict(way):
+def test_out_of_a_list_is_a_dict():
     theta, ec = columns(5)
     out = {"V_C": np.empty(5), "Y": np.empty(5), "status": np.empty(5, np.int8)}
     found = dx.evaluate(SEVERAL, theta=theta, ec=ec, **SIZES, out=out)
@@ -191,21 +190,21 @@ OUTS = {
 
 
 @pytest.mark.parametrize("layout", OUTS)
-def test_out_may_have_any_layout(way, layout):
+def test_out_may_have_any_layout(layout):
     theta, ec = columns(4, 3)
     out = OUTS[layout]()
     assert dx.evaluate("V_C", theta=theta, ec=ec, **SIZES, out=out) is out
     assert np.array_equal(out, dx.evaluate("V_C", theta=theta, ec=ec, **SIZES))
 
 
-def test_a_view_fills_only_its_elements(way):
+def test_a_view_fills_only_its_elements():
     theta, ec = columns(3)
     whole = np.full(6, -1.0)
     dx.evaluate("V_C", theta=theta, ec=ec, **SIZES, out=whole[::2])
     assert whole[1::2].tolist() == [-1.0] * 3
 
 
-def test_out_may_be_single_precision(way):
+def test_out_may_be_single_precision():
     theta, ec = columns(5)
     out = dx.evaluate("V_C", theta=theta, ec=ec, **SIZES, out=np.empty(5, np.float32))
     assert out.dtype == np.float32
@@ -218,20 +217,20 @@ def test_out_may_have_no_axes():
     assert out == dx.evaluate("V_C", **POINT)
 
 
-def test_a_status_may_go_into_wider_numbers(way):
+def test_a_status_may_go_into_wider_numbers():
     theta, ec = columns(3)
     out = {"status": np.full(3, 9), "Y": np.empty(3), "V_C": np.empty(3)}
     dx.evaluate(SEVERAL, theta=theta, ec=ec, **SIZES, out=out)
     assert out["status"].tolist() == [0, 0, 0]
 
 
-def test_out_may_be_an_input(way):
+def test_out_may_be_an_input():
     theta, ec = columns(5)
     wanted = dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
     assert np.array_equal(dx.evaluate("V_C", theta=theta, ec=ec, **SIZES, out=theta), wanted)
 
 
-def test_out_may_overlap_an_input(way):
+def test_out_may_overlap_an_input():
     """As for a ufunc: as if it did not."""
     theta, ec = np.linspace(-4, 7, 9), np.zeros(8)
     wanted = dx.evaluate("V_C", theta=theta[:-1].copy(), ec=ec, **SIZES)

@@ -26,7 +26,6 @@ def both(monkeypatch):
             taken.append(found is not None)
             return found
 
-        monkeypatch.setenv("DESAXE_TIER", "compiled")
         monkeypatch.setattr(arrays, "planned", lambda *call: None)
         general = dx.evaluate(names, **inputs)
         monkeypatch.setattr(arrays, "planned", watched)

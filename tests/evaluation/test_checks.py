@@ -42,7 +42,7 @@ def cases():
 ASKED = ["Y", "V_C", "a_C", "omega", "phi", "margin", "status"]  # at once, by one kernel
 
 
-def test_every_status_and_what_it_leaves(way):
+def test_every_status_and_what_it_leaves():
     found = dx.evaluate(ASKED, **cases())
     assert found["status"].tolist() == CODES
     assert found["status"].dtype == np.int8
@@ -77,7 +77,7 @@ def all_columns(**changed):
 
 
 @pytest.mark.parametrize("name", INPUTS)
-def test_a_bad_element_disturbs_no_other(way, name):
+def test_a_bad_element_disturbs_no_other(name):
     good = all_columns()
     bad = good[name].copy()
     bad[2] = BAD[name]
@@ -87,7 +87,7 @@ def test_a_bad_element_disturbs_no_other(way, name):
     assert after["status"][2] == 4
 
 
-def test_a_bad_speed_is_nan_itself(way):
+def test_a_bad_speed_is_nan_itself():
     found = dx.evaluate("omega", omega=np.array([2.0, math.inf, math.nan]))
     assert np.isnan(found).tolist() == [False, True, True]
 
@@ -274,7 +274,7 @@ def test_a_derivative_that_a_state_makes_zero_is_nan_without_a_mechanism(name):
     assert np.isnan(dx.evaluate(name, ec=[0.0, 0.3], **state)).tolist() == [False, True]
 
 
-def test_a_derivative_that_constant_speed_makes_zero_is_nan_without_a_mechanism(way):
+def test_a_derivative_that_constant_speed_makes_zero_is_nan_without_a_mechanism():
     design = {"theta": [1.57, 1.57], "AB": 0.125, "BC": 0.35, "omega0": 10.0, "ec": [0.0, 0.3]}
     assert np.isnan(dx.evaluate("V_C_wrt_omega0_omega0", **design)).tolist() == [False, True]
 

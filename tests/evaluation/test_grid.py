@@ -7,7 +7,6 @@ import pytest
 
 import desaxe as dx
 from desaxe.mechanism.inputs import INPUTS, Inputs
-from tests.ways import take_way
 
 THETA = np.linspace(0.0, 6.0, 7)
 MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
@@ -121,9 +120,8 @@ def test_bad_arguments(arguments, error, words):
 
 
 @pytest.mark.thorough
-def test_the_order_of_axes_changes_no_digit(monkeypatch):
+def test_the_order_of_axes_changes_no_digit():
     """Nor does broadcasting or reducing: which loop an operation is moved to must not change its rounding."""
-    take_way(monkeypatch, "compiled")
     axes = {
         "theta": np.linspace(0.0, 6.2, 50),
         "ec": np.linspace(-0.3, 0.3, 13),

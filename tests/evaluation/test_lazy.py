@@ -7,16 +7,11 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from tests.ways import bits, take_way
+from tests.ways import bits
 
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 72)
 INPUTS = {"theta": ANGLES, "ec": [-0.05, 0.0, 0.02, 0.9], "AB": 0.2, "BC": [0.1, 0.5, 0.2], "omega0": 3.0}
 NAMES = ["a_C", "V_C_wrt_ec"]
-
-
-@pytest.fixture(autouse=True)
-def _compiled(monkeypatch):
-    take_way(monkeypatch, "compiled")
 
 
 def test_chunks_are_those_asked_for():

@@ -8,7 +8,6 @@ import pytest
 import desaxe as dx
 from desaxe.evaluation import loops as _axes
 from desaxe.evaluation.loops import INNERMOST, loops_over
-from tests.ways import take_way
 
 NAMES = ["V_C", "a_C", "a_C_wrt_ec", "status"]
 
@@ -31,7 +30,7 @@ PATTERNS = {  # shapes of the inputs, and the sizes of the loops
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("pattern", PATTERNS)
-def test_a_nest_has_the_values_of_one_loop(pattern, way, monkeypatch):
+def test_a_nest_has_the_values_of_one_loop(pattern, monkeypatch):
     shapes, nest = PATTERNS[pattern]
     inputs = {"ec": 0.01, "AB": 0.15, "BC": 0.4, "omega0": 3.0}
     inputs |= {name: values(name, *shape) for name, shape in shapes.items()}
@@ -49,7 +48,6 @@ def test_a_nest_has_the_values_of_one_loop(pattern, way, monkeypatch):
 
 def test_a_nest_fills_memory_of_the_caller_and_knows_undecided_points(monkeypatch):
     """Angles next to the last one that each mechanism reaches, on both sides of it."""
-    take_way(monkeypatch, "compiled")
     ec = np.linspace(0.21, 0.25, 5)
     last = np.arcsin((0.35 - ec) / 0.15)
     theta = np.sort(

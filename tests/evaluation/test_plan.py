@@ -11,7 +11,7 @@ from desaxe.evaluation.axes import outer_of
 from desaxe.evaluation.labels import Output
 from desaxe.evaluation.plan import Plan
 from desaxe.evaluation.points import Points, points_of
-from tests.ways import bits, take_way
+from tests.ways import bits
 
 # One angle is beyond what a kernel's own sine reduces: all blocks then take another kernel, or none.
 FAR = {"theta": [0.1, 1.0, 1e9, 2.0, 1e12, 3.0], "ec": [0.0, 0.01, 0.02], "AB": 0.1, "BC": [0.3, 0.4]}
@@ -22,11 +22,6 @@ EDGE = {"theta": ANGLES, "ec": [-0.05, 0.0, 0.02, 0.9], "AB": 0.2, "BC": [0.1, 0
 MASSES = {"m_slider": 0.8, "omega0": 5.0}
 POINTS = [0.0, 1.0, 2.0, 4.0], [-400.0, 200.0, -50.0, 20.0]
 CUTS = [{"theta": 1, "ec": 2}, {"theta": 5, "BC": 1}, {"ec": 1}, {}]
-
-
-@pytest.fixture(autouse=True)
-def _compiled(monkeypatch):
-    take_way(monkeypatch, "compiled")
 
 
 def over_theta():

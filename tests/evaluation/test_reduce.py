@@ -10,7 +10,6 @@ from desaxe.evaluation import plan
 from desaxe.evaluation.points import Points
 from desaxe.evaluation.reductions import kinds
 from desaxe.evaluation.reductions.reduced import BLOCK
-from desaxe.runtime import executor
 
 MACHINE = {"AB": 0.125, "omega0": 157.08}
 TURN = np.linspace(0.0, 2.0 * np.pi, 721)
@@ -55,7 +54,6 @@ def compare(names, reduced_axis, **inputs):
 NAMES, DESIGNS = ["a_C", "V_C"], {"ec": [0.0, 0.2, 0.24, 0.6], "BC": [0.35, 0.4], **MACHINE}
 
 
-@pytest.mark.usefixtures("way")
 def test_over_theta_with_infeasible_designs():
     found = compare(NAMES, "theta", theta=TURN[::18], **DESIGNS)  # rows of 40 leave a rest after the lanes
     assert found.a_C_absmax.dims == ("ec", "BC")
@@ -65,7 +63,6 @@ def test_over_theta_with_infeasible_designs():
 
 
 @pytest.mark.thorough
-@pytest.mark.usefixtures("way")
 def test_over_another_axis():
     found = compare(["a_C"], "ec", ec=np.linspace(-0.2, 0.24, 23), theta=TURN[::60], BC=0.35, **MACHINE)
     assert found.a_C_max.dims == ("theta",)
@@ -73,14 +70,12 @@ def test_over_another_axis():
 
 
 @pytest.mark.thorough
-@pytest.mark.usefixtures("way")
 def test_of_one_design():
     found = compare(["a_C"], "theta", theta=TURN[::10], ec=0.01, BC=0.35, **MACHINE)
     assert found.a_C_absmax.dims == ()
 
 
 @pytest.mark.thorough
-@pytest.mark.usefixtures("way")
 def test_bad_elements_are_skipped():
     theta = TURN[::10].copy()
     theta[[3, 50]] = np.nan, np.inf
@@ -94,7 +89,6 @@ def test_rows_longer_than_a_block():
     compare(["a_C"], "theta", theta=theta, ec=[0.0, 0.2, 0.23], BC=[0.35, 0.4], **MACHINE)
 
 
-@pytest.mark.usefixtures("way")
 def test_squares_of_any_scale():
     unit = dx.grid(NAMES, theta=TURN[::30], **{**DESIGNS, "omega0": 1.0})
     wanted = by_numpy("rms", unit.a_C, 0)
@@ -120,7 +114,6 @@ def test_threads_change_nothing():
 
 
 def test_the_grid_is_never_stored(monkeypatch):
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
     compute, sizes = Points.compute, []
 
     def computed(*args):
@@ -145,13 +138,6 @@ def test_labels():
     assert found.a_C_absmax.units == "m/s^2"
     assert found.a_C_absmax_theta.units == "rad"
     assert "theta" not in found.coords
-
-
-def test_small_grids_compile_nothing(cold, monkeypatch):
-    monkeypatch.setattr(executor, "_compiled", None)
-    theta = np.linspace(0.0, 3.0, 7)
-    dx.grid("phi", theta=theta, ec=[0.01, 0.02], AB=0.11, BC=0.37)
-    dx.grid("phi", reduce={"theta": "max"}, theta=theta, ec=[0.01, 0.02], AB=0.11, BC=0.37)
 
 
 @pytest.mark.parametrize(
@@ -196,7 +182,6 @@ FEASIBLE = {**BOTH, "ec": [0.0, 0.1, 0.2]}
 
 
 @pytest.mark.thorough
-@pytest.mark.usefixtures("way")
 def test_two_axes_at_once_are_all_their_points():
     found = dx.grid(
         "a_C", reduce={("theta", "ec"): [*KINDS, "std", "median", "p95", ("percentile", 12.5)]}, **BOTH
@@ -251,7 +236,6 @@ def test_measures_of_single_names_and_a_function_of_the_design():
 
 
 def test_a_large_one_is_computed_in_blocks(monkeypatch):
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
     whole = dx.grid("a_C", reduce={("theta", "ec"): ["p95", "max"]}, **FEASIBLE)
     monkeypatch.setattr(plan, "POINTS", 1)
     assert whole.identical(dx.grid("a_C", reduce={("theta", "ec"): ["p95", "max"]}, **FEASIBLE))

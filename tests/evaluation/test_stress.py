@@ -20,7 +20,6 @@ from desaxe.oracle import force_truth
 from desaxe.oracle.families import FAMILIES, Rng, points, rescaled
 from desaxe.oracle.truth import LAW, all_names, conditions, truth, ulp_error
 from tests.effort import cases
-from tests.ways import take_way
 
 NAMES = [
     q + tail
@@ -89,9 +88,8 @@ def compiled(names, rows):
 
 @pytest.mark.sampled
 @pytest.mark.parametrize("family", FAMILIES)
-def test_the_promise_is_kept(family, monkeypatch):
+def test_the_promise_is_kept(family):
     rows = list(points(family, cases(12, 200)))
-    take_way(monkeypatch, "compiled")
     for row, by_kernel in zip(rows, compiled([*BY_KERNEL, "status"], rows), strict=True):
         plain = dx.evaluate(NAMES, **row)
         broken = {
@@ -213,11 +211,9 @@ USUAL = {"theta": 1.0, "ec": 0.1, "AB": 0.2, "BC": 0.5, "omega0": 3.0, "alpha": 
 
 
 @pytest.mark.sampled
-@pytest.mark.parametrize("way", ["plain", "compiled"])
 @pytest.mark.parametrize("name", LAW)
-def test_odd_numbers_in_a_column(name, way, monkeypatch):
+def test_odd_numbers_in_a_column(name):
     """No crash; NaN and status 4 where the number is bad; a number that is good is told apart."""
-    take_way(monkeypatch, way)
     column = np.array([*ODD, USUAL[name]])
     columns = {each: np.full(len(column), usual) for each, usual in USUAL.items()}  # one kernel serves all
     found = dx.evaluate([*BY_KERNEL, "status"], **columns | {name: column})

@@ -13,7 +13,6 @@ import desaxe as dx
 from desaxe.oracle.truth import LAW, STATE, all_names, conditions, relative_error, truth_all
 from tests.effort import cases
 from tests.points import draw
-from tests.ways import take_way
 
 PROMISE = 8 * 2.0**-52
 
@@ -66,9 +65,8 @@ def test_generic_points_are_generic():
 
 @pytest.mark.thorough
 @pytest.mark.parametrize(("kind", "part"), [("generic", 0), ("concentric", 1), ("state", 2)])
-def test_a_kernel_is_as_right_as_a_point(kind, part, monkeypatch):
+def test_a_kernel_is_as_right_as_a_point(kind, part):
     """The same through the compiled loop, with its own sine and cosine: a third of the names each."""
-    take_way(monkeypatch, "compiled")
     points = list(draw(kind, cases(0, 25, 50)))
     columns = {name: np.array([point[name] for point in points]) for name in points[0] if name != "branch"}
     answers = dx.evaluate(names_for(points[0])[part::3], **columns, branch=points[0]["branch"])

@@ -75,12 +75,11 @@ LOADS = {
 @pytest.mark.parametrize("over", ["step", pytest.param("stroke", marks=pytest.mark.thorough)])
 def test_a_grid_has_the_values_of_its_points(over, monkeypatch):
     """The jumps of the step are exactly at points of the grid, where one offset is 0."""
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
     found = dx.grid(NAMES, F_Y=LOADS[over], **AXES, **MACHINE)
     cut = dx.grid(NAMES, F_Y=LOADS[over], chunks={"ec": 7, "theta": 20}, **AXES, **MACHINE)
     for name in NAMES:
         np.testing.assert_array_equal(cut[name], found[name], err_msg=name)
-    monkeypatch.setenv("DESAXE_TIER", "interpreted")
+    monkeypatch.setattr("desaxe.evaluation.under_loads.points.LEAST", 10**9)
     points = dx.evaluate(NAMES, theta=AXES["theta"][:, None], ec=AXES["ec"], F_Y=LOADS[over], **MACHINE)
     for name in NAMES:
         scale = np.abs(points[name]).max()
@@ -99,14 +98,13 @@ def test_a_load_that_a_name_does_not_hang_on_changes_nothing():
 
 @pytest.mark.thorough
 def test_a_reduced_grid_has_the_values_of_its_points(monkeypatch):
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
     found = dx.grid("T_in", F_Y=LOADS["step"], reduce={"theta": ["max", "mean"]}, **AXES, **MACHINE)
     one = {**AXES, "ec": AXES["ec"][20:21]}
     alone = dx.grid(
         "T_in", F_Y=LOADS["step"], reduce={"theta": ["max", "mean"]}, chunks={"ec": 1}, **one, **MACHINE
     )
     np.testing.assert_array_equal(alone.T_in_mean, found.T_in_mean[20:21])
-    monkeypatch.setenv("DESAXE_TIER", "interpreted")
+    monkeypatch.setattr("desaxe.evaluation.under_loads.points.LEAST", 10**9)
     points = dx.evaluate("T_in", theta=AXES["theta"][:, None], ec=AXES["ec"], F_Y=LOADS["step"], **MACHINE)
     np.testing.assert_allclose(found.T_in_max, points.max(axis=0), rtol=1e-12)
     np.testing.assert_allclose(found.T_in_mean, points.mean(axis=0), rtol=1e-10, atol=1e-11)
@@ -114,12 +112,11 @@ def test_a_reduced_grid_has_the_values_of_its_points(monkeypatch):
 
 def test_what_hangs_on_fewer_axes_is_looked_up_too(monkeypatch):
     """The slider's place is a table over theta, the way in which it goes hangs on the speed."""
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
     axes = {"theta": AXES["theta"], "omega0": np.linspace(-20.0, 30.0, 6), "ec": 0.01}
     machine = {name: value for name, value in MACHINE.items() if name not in axes}
     load = dx.over_stroke([0.01, 0.1], [-400.0, 0.0], [-1.0, 30.0], "linear", dead_centre="outer")
     found = dx.grid("T_in", F_Y=load, reduce={"theta": "mean"}, **axes, **machine)
-    monkeypatch.setenv("DESAXE_TIER", "interpreted")
+    monkeypatch.setattr("desaxe.evaluation.under_loads.points.LEAST", 10**9)
     speeds, theta = np.meshgrid(axes["omega0"], axes["theta"], indexing="ij")
     points = dx.evaluate("T_in", theta=theta, omega0=speeds, ec=0.01, F_Y=load, **machine)
     np.testing.assert_allclose(found.T_in_mean, points.mean(axis=1), rtol=1e-10)

@@ -38,7 +38,6 @@ def next_to_jumps(load, ec):
 @pytest.mark.sampled
 @pytest.mark.parametrize("name", CASES)
 def test_a_kernel_has_the_values_of_few_points(name, monkeypatch):
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
     monkeypatch.setattr(loaded, "MANY", 500)
     monkeypatch.setattr("desaxe.evaluation.under_loads.points.LEAST", 500)
     load, rng = LOADS[name], np.random.default_rng(5)

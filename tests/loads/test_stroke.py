@@ -73,8 +73,7 @@ def test_any_design_has_the_forces_of_its_own_distance():
     assert min(seen.values()) >= 10
 
 
-def test_arrays_numbers_and_grids_agree_and_say_the_same_of_the_status(monkeypatch):
-    monkeypatch.setenv("DESAXE_TIER", "numpy")  # kernels: test_in_kernel
+def test_arrays_numbers_and_grids_agree_and_say_the_same_of_the_status():
     load = dx.over_stroke(DISTANCES, OUTWARD, INWARD, dead_centre="inner")
     ec, theta = np.array([0.0, 0.01, 0.024, 0.03]), np.linspace(0.0, 0.5, 5)  # 0.024: a change point
     names = ["T_in", "T_in_wrt_ec", "T_in_wrt_theta", "V_C", "status"]

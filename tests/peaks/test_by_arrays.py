@@ -9,6 +9,7 @@ from desaxe.peaks import designs as plans
 from desaxe.runtime import cache
 from desaxe.support.recent import Recent
 from tests.effort import cases
+from tests.ways import take_way
 
 BODIES = {"m_slider": 1.0, "m_rod": 0.6, "I_rod": 0.004, "r_rod": 0.03, "g_Y": 9.81}
 
@@ -39,7 +40,7 @@ def designs(size, seed, narrowest=1e-9):
 def test_many_designs_are_those_of_loops_in_plain_python(name, kind, more, monkeypatch):
     given = designs(cases(40, 300, 2_000), 1) | more
     arrays = dx.peak(name, kind=kind, **given)
-    monkeypatch.setenv("DESAXE_TIER", "interpreted")
+    take_way(monkeypatch, "plain")
     loops = dx.peak(name, kind=kind, **given)
     np.testing.assert_allclose(arrays["value"], loops["value"], rtol=1e-13)
     apart = np.abs(arrays["theta"] - loops["theta"]) > 1e-6  # of two that are equal but for rounding, either

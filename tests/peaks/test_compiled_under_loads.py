@@ -8,6 +8,7 @@ from desaxe.evaluation.under_loads.arcs import arcs_of
 from desaxe.loads.pieces import Place, first_doubles, piece_at, settled_pieces
 from desaxe.peaks import compiled
 from tests.effort import cases
+from tests.ways import take_way
 
 TURN = 2.0 * np.pi
 RANGES = [(0.0, TURN), (-3.0, 9.5), (0.4, 1.9)]
@@ -39,7 +40,7 @@ def designs(rng, size):
 
 
 def peaks(monkeypatch, tier, name, given):
-    monkeypatch.setenv("DESAXE_TIER", tier)
+    take_way(monkeypatch, tier)
     return dx.peak(name, **given)
 
 
@@ -138,7 +139,7 @@ def test_machine_code_of_another_form_does_not_serve(monkeypatch):
         "F_Y": dx.over_theta([0.0, 2.0, 5.0], [1.0, -5.0, 2.0], period=TURN),
     }
     wanted = peaks(monkeypatch, "numpy", "T_in", given)
-    monkeypatch.delenv("DESAXE_TIER")
+    take_way(monkeypatch, None)
     monkeypatch.setattr(type(compiled.STORE), "is_ready", lambda _, search: not search.form.wide_margins)
     monkeypatch.setattr(compiled, "_on_disk", lambda _: False)
     assert dx.peak("T_in", **given) == wanted

@@ -130,7 +130,7 @@ def check(draw, found):
 
 @pytest.fixture
 def numpy(monkeypatch):
-    """No kernel for the inputs of each random machine; `test_in_arrays_in_every_tier` has some."""
+    """No kernel for the inputs of each random machine; `test_in_arrays_in_every_way` has some."""
     take_way(monkeypatch, "numpy")
 
 
@@ -169,7 +169,9 @@ def test_in_arrays():
 
 
 @pytest.mark.thorough
-def test_in_arrays_in_every_tier(way):
+@pytest.mark.parametrize("way", ["plain", "numpy", "compiled"])
+def test_in_arrays_in_every_way(way, monkeypatch):
+    take_way(monkeypatch, way)
     for seed in range(cases(0, 2 if way == "compiled" else 6, 30)):
         in_arrays(seed)
 

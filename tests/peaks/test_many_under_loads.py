@@ -6,6 +6,7 @@ import pytest
 import desaxe as dx
 from desaxe.evaluation.values import values
 from desaxe.peaks.loaded import ValuesUnderLoads
+from tests.ways import take_way
 
 MACHINE = {"AB": 0.1, "BC": 0.35, "omega0": 30.0, "m_slider": 2.0, "m_rod": 1.0}
 LOADS = {
@@ -17,7 +18,7 @@ LOADS = {
 
 @pytest.fixture(autouse=True)
 def nobody_waits_for_a_compiler(monkeypatch):
-    monkeypatch.setenv("DESAXE_TIER", "numpy")
+    take_way(monkeypatch, "numpy")
 
 
 @pytest.mark.parametrize("over", LOADS)

@@ -11,6 +11,7 @@ import desaxe as dx
 from desaxe.oracle.truth import truth
 from desaxe.peaks import compiled as module
 from desaxe.peaks import designs as parts_of_designs
+from tests.ways import take_way
 
 OMEGA = 157.08
 MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": OMEGA}
@@ -263,7 +264,7 @@ def test_two_maxima_next_to_the_inner_dead_centre():
 @pytest.mark.thorough
 @pytest.mark.parametrize("threads", [2, 3])
 def test_the_same_for_any_number_of_threads(threads, monkeypatch):
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
+    take_way(monkeypatch, "compiled")
     designs = random_designs(5, 5000, False)
     one, more = (dx.peak("a_C", threads=n, **designs) for n in (1, threads))
     for name in ("value", "theta", "status"):
@@ -277,7 +278,7 @@ def test_the_same_for_any_number_of_threads(threads, monkeypatch):
 @pytest.mark.parametrize("one_special", [False, True], ids=["all turn", "one does not"])
 def test_the_same_in_parts(monkeypatch, bad, one_special):
     """Threads that take parts of the designs all through change no digit, wide margins or not."""
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
+    take_way(monkeypatch, "compiled")
     designs = {name: column.copy() for name, column in random_designs(6, 400, False).items()}
     designs["alpha"][:] = 0.0  # none stalls
     if bad:
@@ -300,7 +301,7 @@ def test_the_same_in_parts(monkeypatch, bad, one_special):
 
 def test_alone_among_others_and_in_every_tier(monkeypatch):
     """A design alone has the answer it has among others; the tiers differ by the sine's last bit."""
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
+    take_way(monkeypatch, "compiled")
     designs = random_designs(7, 1000, True)
     many = dx.peak("a_C", **designs)
     alone = [{n: float(column[k]) for n, column in designs.items()} for k in range(0, 1000, 125)]

@@ -90,7 +90,7 @@ def fork_in_first_calls(folder: Path, random: Random) -> Verdict:
         seconds=SECONDS,
         by_thread=random.random() < 0.5,
     )
-    code, out, error = run(program, folder, SECONDS + 120.0, DESAXE_TIER=random.choice(["compiled", ""]))
+    code, out, error = run(program, folder, SECONDS + 120.0)
     told = f"{first}, then {again} after {', '.join(f'{moment:.3f}' for moment in moments)} s"
     if code is None or "hung" in out:
         return Verdict(HUNG, f"{told}: {out}")

@@ -75,7 +75,7 @@ code = os.waitstatus_to_exitcode(os.waitpid(number, 0)[1])
 
 def run(program: str, cache_folder: Path, seconds: float, **environment: str) -> tuple[int | None, str, str]:
     """A program in a process of its own: exit code, None where it had to be killed, and what it printed."""
-    own = {**os.environ, "DESAXE_TIER": "compiled", "DESAXE_CACHE_DIR": str(cache_folder), **environment}
+    own = {**os.environ, "DESAXE_CACHE_DIR": str(cache_folder), **environment}
     process = subprocess.Popen(
         [sys.executable, "-c", program], env=own, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )
@@ -145,7 +145,7 @@ def interrupted(folder: Path, random: Random) -> Verdict:
     name = random.choice(list(WORKS))
     program = f"{START}\nfirst = value()\n{INTERRUPTED.format(work=WORKS[name])}"
     place = folder if name == "compile" else warm()  # in an empty folder it compiles
-    own = {**os.environ, "DESAXE_TIER": "compiled", "DESAXE_CACHE_DIR": str(place)}
+    own = {**os.environ, "DESAXE_CACHE_DIR": str(place)}
     process = subprocess.Popen(
         [sys.executable, "-c", program], env=own, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )

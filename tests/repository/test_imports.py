@@ -33,15 +33,17 @@ def test_one_point_loads_nothing(code):
     assert loaded_by(code) == set()
 
 
-def test_a_few_points_load_numpy_alone():
-    assert loaded_by(f"import numpy, desaxe\ndesaxe.evaluate('a_C', {ARRAYS})") == {"numpy"}
-
-
-def test_a_kernel_loads_neither_numba_nor_sympy(monkeypatch):
-    code = f"import numpy, desaxe\ndesaxe.evaluate('a_C', {KERNEL})"
-    assert loaded_by(code) == {"numpy"}  # a new request is NumPy's
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
-    assert loaded_by(code) == {"numpy"}
+@pytest.mark.parametrize(
+    "call",
+    [
+        f"evaluate('a_C', {ARRAYS})",
+        f"evaluate('a_C', {KERNEL})",
+        f"grid('a_C', out=numpy.empty(3000), {KERNEL})",
+        "function('a_C', ec=0.01, AB=0.125, BC=0.35, omega0=157.0)(numpy.ones(5))",
+    ],
+)
+def test_arrays_load_numpy_and_no_numba(call):
+    assert loaded_by(f"import numpy, desaxe\ndesaxe.{call}") == {"numpy"}
 
 
 @pytest.mark.parametrize(

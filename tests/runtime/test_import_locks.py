@@ -90,13 +90,10 @@ sys.meta_path.insert(0, Spy())
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("tier", ["", "compiled"])
-def test_first_calls_import_nothing_without_the_lock(tier, tmp_path, monkeypatch):
+def test_first_calls_import_nothing_without_the_lock(tmp_path, monkeypatch):
     """What libraries import inside their functions is seen, too."""
     monkeypatch.setenv("DESAXE_CACHE_DIR", str(tmp_path))
-    monkeypatch.setenv("DESAXE_TIER", tier)
-    calls = FIRST_CALLS.values() if not tier else [FIRST_CALLS["evaluate"]]
-    program = "\n".join([START, SPY, *calls])
+    program = "\n".join([START, SPY, *FIRST_CALLS.values()])
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert not done.stdout
 

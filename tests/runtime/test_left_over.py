@@ -65,8 +65,7 @@ def test_single_points():
 @pytest.mark.sampled
 @pytest.mark.parametrize("names", [["status", "a_C"], ["a_C", "status", "V_C_wrt_ec"]])
 @pytest.mark.parametrize("threads", [1, 2])
-def test_arrays(monkeypatch, names, threads):
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
+def test_arrays(names, threads):
     points = limits(cases(400, 2_000), 2)
     theta, ec, AB, BC = np.array(points).T
     many = 20_000 * threads // len(points) + 1  # enough for every thread
@@ -81,8 +80,7 @@ def test_arrays(monkeypatch, names, threads):
 
 @pytest.mark.sampled
 @pytest.mark.parametrize("order", [("theta", "ec"), ("ec", "theta")])
-def test_grids(monkeypatch, order):
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
+def test_grids(order):
     for point in limits(cases(35, 70), 3)[:: len(STEPS)]:
         _, ec, AB, BC = point
         theta = [*neighbours(point[0]), 0.5]
@@ -93,8 +91,7 @@ def test_grids(monkeypatch, order):
         np.testing.assert_array_equal(status, np.where(inside, 0, 1))
 
 
-def test_forces_and_a_given_state(monkeypatch):
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
+def test_forces_and_a_given_state():
     points = limits(300, 4)
     theta, ec, AB, BC = np.array(points).T
     inside = np.array([reaches(*point) for point in points])
@@ -108,7 +105,6 @@ def test_what_is_decided_in_the_kernel_is_left_alone(monkeypatch):
     """Next to a change point BC - |u| is tiny, but known: nothing is answered twice."""
     from desaxe.runtime import left_over
 
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
     monkeypatch.setattr(left_over, "kernel_for", None)
     theta = np.pi / 2 + np.geomspace(1e-9, 0.1, 300)
     assert np.isfinite(dx.evaluate("a_C", theta=theta, ec=0.25, AB=0.125, BC=0.375, **SPEED)).all()

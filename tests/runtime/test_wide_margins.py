@@ -13,7 +13,6 @@ from desaxe.runtime.request import request
 from desaxe.runtime.specialise import plain_form, specialise
 from tests.effort import cases
 from tests.evaluation.test_stress import NAMES, compiled, is_kept
-from tests.ways import take_way
 
 SHARE = 0.875
 SIDES = [f"transmission_angle_wrt_{p}" for p in ("theta", "ec", "AB", "BC")]
@@ -48,8 +47,7 @@ POINTS = {
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("where", POINTS)
-def test_the_promise_holds(where, monkeypatch):
-    take_way(monkeypatch, "compiled")
+def test_the_promise_holds(where):
     draw, count, names = POINTS[where]
     rows = list(draw(count))
     for row, by_kernel in zip(rows, compiled(names, rows), strict=True):
@@ -58,9 +56,7 @@ def test_the_promise_holds(where, monkeypatch):
             assert not {name: values[name] for name in names if not is_kept(name, values[name], row)}, row
 
 
-@pytest.mark.parametrize("where", ["kernel", "numbers"])
-def test_an_element_has_the_same_value_among_any_others(where, monkeypatch):
-    monkeypatch.setenv("DESAXE_TIER", "compiled" if where == "kernel" else "interpreted")
+def test_an_element_has_the_same_value_among_any_others():
     rng = np.random.default_rng(3)
     count = 1_500
     columns = {"theta": rng.uniform(-7, 7, count), "ec": rng.uniform(-0.2, 0.2, count)}
@@ -83,13 +79,12 @@ def test_an_element_has_the_same_value_among_any_others(where, monkeypatch):
     ("name", "value"),
     [("theta", 3e6), ("ec", 1e-200), ("ec", 1e150), ("AB", 1e-180), ("AB", 0.0), ("BC", 1e200)],
 )
-def test_a_point_that_a_kernel_cannot_compute_is_told(name, value, monkeypatch):
+def test_a_point_that_a_kernel_cannot_compute_is_told(name, value):
     """Too large an angle, or a length near the ends of the double range, at one point of many."""
     rng, names = np.random.default_rng(4), ["V_C", "a_C", "status"]
     columns = {"theta": rng.uniform(-7, 7, 1_100), "ec": rng.uniform(-0.05, 0.05, 1_100)}
     columns |= {"AB": rng.uniform(0.1, 0.15, 1_100), "BC": rng.uniform(0.17, 0.4, 1_100)}
     columns[name][700] = value
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
     found = dx.evaluate(names, **columns, omega0=3.0)
     if value > 1e60:
         assert found["status"][700] == 4

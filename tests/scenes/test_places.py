@@ -11,7 +11,6 @@ from desaxe.cli.command import main
 from desaxe.scenes.command import run_scene
 from desaxe.scenes.scene import NotWrittenError
 from tests.example_scenes import SMALL
-from tests.ways import take_way
 
 TOML = """
 outputs = ["V_C"]
@@ -34,7 +33,6 @@ FOREIGN = "years of work"
 @pytest.fixture(autouse=True)
 def _here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    take_way(monkeypatch, "plain")
 
 
 def scene_file(data="out/a.csv", picture=None):

@@ -190,7 +190,6 @@ def test_accuracy_reaches_values_peaks_and_checks():
 
 
 def test_large_grid_in_blocks(monkeypatch):
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
     whole = dx.scene(SMALL).run().dataset
     monkeypatch.setattr("desaxe.scenes.parts.grid.BLOCK", 5)
     steps = []

@@ -37,7 +37,7 @@ def examine(accuracy: bool = False) -> Examination:
         "optional": [_row(name, _optional(name)) for name in OPTIONAL],
         "kernels on disk": _cache(),
         "committed kernels": [_committed()],
-        "arrays": [_row("tier", _tier())],
+        "arrays": [_row("machine code", _machine_code())],
         "processor": _processor(),
         "computation": computed,
     }
@@ -77,7 +77,7 @@ def _python() -> str:
 
 
 def _cache() -> list[str]:
-    """The cache folder: its path, its persistence, its contents."""
+    """The cache folder of peaks and simulation: its path, its persistence, its contents."""
     from ..runtime.cache import VARIABLE, entries, folder, limit
 
     found = folder()
@@ -91,18 +91,17 @@ def _cache() -> list[str]:
     ]
 
 
-def _tier() -> str:
-    """The tiers that evaluate a request over arrays, and their thresholds."""
-    from ..runtime.tiers import BREAK_EVEN, NUMPY_PAYS, VARIABLE, forced_tier
+def _machine_code() -> str:
+    """Compile, load and call a function: some systems refuse memory that is written and then run."""
+    from ctypes import CFUNCTYPE, c_double
+
+    from ..compiler.llvm.machine import compiled
 
     try:
-        forced = forced_tier()
-    except ValueError as error:
+        code = compiled("define double @half() {\n  ret double 0.5\n}", "half")
+    except RuntimeError as error:
         return str(error)
-    if forced is not None:
-        return f"{forced}, as {VARIABLE} says"
-    few = f"plain Python below {BREAK_EVEN:,} points"
-    return f"{few}; NumPy for a new request up to {NUMPY_PAYS:,}; else compiled"
+    return "runs" if CFUNCTYPE(c_double)(code.address)() == 0.5 else "gives a wrong answer"
 
 
 def _committed() -> str:

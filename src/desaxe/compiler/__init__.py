@@ -1,6 +1,7 @@
 """The compiler: a frozen Program, passes over it, and emitters. No SymPy, nothing of the library.
 
     operations  the operation table: meaning, spellings, cost, one row each
+    instructions  operations that take LLVM several instructions
     program     Program, a list of single assignments, and its canonical form
     text        a Program as readable Python, and back, parsing only what is needed
     helpers     functions that spellings call, in plain Python
@@ -10,6 +11,7 @@
     passes      Program -> Program, one module each
     lowering    the stages from a Program to machine code, in their order: read this first
     kernel      a loop nest whose bodies are Programs
+    llvm        machine code in memory, what the library itself runs
     languages   Python, numba, C, jax, Octave and JavaScript, one file or folder each
     forms       plain and stable lines as one program, set apart in a kernel
     stages      a program as two loops, so that a processor sees more than one point at a time

@@ -24,6 +24,8 @@ from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
+from . import instructions
+
 CALL = 100
 
 
@@ -42,7 +44,7 @@ class Operation(NamedTuple):
     c: str
     jax: str
     octave: str
-    llvm: str  # one instruction, {T} the generic type; or an argument or constant alone
+    llvm: str  # instructions (see `instructions`); one of single doubles goes over a vector's elements
     cost: float  # relative to one addition, throughput in a vectorised loop
     exact: Callable[..., Any]  # exact(mp, *args)
     undefined: str = ""  # where the real function has no value
@@ -123,26 +125,26 @@ OPERATIONS: dict[str, Operation] = dict(
     [
         _row("copy", "TT", "{0}", CALL, 0, lambda mp, a: a, llvm="{0}"),
         _row(
-            "add", "fff", "{0} + {1}", 12, 1, lambda mp, a, b: a + b, llvm="fadd double {0}, {1}",
+            "add", "fff", "{0} + {1}", 12, 1, lambda mp, a, b: a + b, llvm="fadd {f} {0}, {1}",
             commutes=True,
         ),
-        _row("sub", "fff", "{0} - {1}", 12, 1, lambda mp, a, b: a - b, llvm="fsub double {0}, {1}"),
+        _row("sub", "fff", "{0} - {1}", 12, 1, lambda mp, a, b: a - b, llvm="fsub {f} {0}, {1}"),
         _row(
             "mul", "fff", "{0} * {1}", 13, 1, lambda mp, a, b: a * b,
-            octave="{0} .* {1}", llvm="fmul double {0}, {1}", commutes=True,
+            octave="{0} .* {1}", llvm="fmul {f} {0}, {1}", commutes=True,
         ),
         _row(
             "div", "fff", "{0} / {1}", 13, 8, lambda mp, a, b: a / b,
-            python="divide({0}, {1})", octave="{0} ./ {1}", llvm="fdiv double {0}, {1}", undefined="{1} == 0",
+            python="divide({0}, {1})", octave="{0} ./ {1}", llvm="fdiv {f} {0}, {1}", undefined="{1} == 0",
         ),
-        _row("neg", "ff", "-{0}", 14, 0.5, lambda mp, a: -a, llvm="fneg double {0}"),
+        _row("neg", "ff", "-{0}", 14, 0.5, lambda mp, a: -a, llvm="fneg {f} {0}"),
         _row(
             "abs", "ff", "fabs({0})", CALL, 0.5, lambda mp, a: abs(a),
-            octave="abs({0})", llvm="call double @llvm.fabs.f64(double {0})",
+            octave="abs({0})", llvm="call {f} @llvm.fabs.{s}({f} {0})",
         ),
         _row(
             "sqrt", "ff", "sqrt({0})", CALL, 9, lambda mp, a: mp.sqrt(a),
-            python="root({0})", octave="root({0})", llvm="call double @llvm.sqrt.f64(double {0})",
+            python="root({0})", octave="root({0})", llvm="call {f} @llvm.sqrt.{s}({f} {0})",
             undefined="{0} < 0",
         ),
         _row("sin", "ff", "sin({0})", CALL, 20, lambda mp, a: mp.sin(a), python="sine({0})"),
@@ -150,7 +152,7 @@ OPERATIONS: dict[str, Operation] = dict(
         _row("atan2", "fff", "atan2({0}, {1})", CALL, 40, lambda mp, a, b: mp.atan2(a, b)),
         _row(
             "hypot", "fff", "hypot({0}, {1})", CALL, 20, lambda mp, a, b: mp.sqrt(a * a + b * b),
-            commutes=True,
+            llvm=instructions.HYPOT, commutes=True,
         ),
         _row("exp", "ff", "exp({0})", CALL, 20, lambda mp, a: mp.exp(a), python="exponential({0})"),
         _row(
@@ -163,64 +165,72 @@ OPERATIONS: dict[str, Operation] = dict(
         ),
         _row(
             "floor", "ff", "floor({0})", CALL, 1, lambda mp, a: mp.floor(a),
-            python="whole({0})", llvm="call double @llvm.floor.f64(double {0})",
+            python="whole({0})", llvm="call {f} @llvm.floor.{s}({f} {0})",
         ),
         _row(
             "copysign", "fff", "copysign({0}, {1})", CALL, 1,
             lambda mp, a, b: abs(a) if b >= 0 else -abs(a),
-            llvm="call double @llvm.copysign.f64(double {0}, double {1})",
+            llvm="call {f} @llvm.copysign.{s}({f} {0}, {f} {1})",
         ),
         _row(
-            "two_sum_error", "fff", "two_sum_error({0}, {1})", CALL, 5, lambda mp, a, b: a * 0, commutes=True
+            "two_sum_error", "fff", "two_sum_error({0}, {1})", CALL, 5, lambda mp, a, b: a * 0,
+            llvm=instructions.TWO_SUM_ERROR, commutes=True,
         ),
         _row(
             "two_product_error", "fff", "two_product_error({0}, {1})", CALL, 1, lambda mp, a, b: a * 0,
-            commutes=True,
+            llvm=instructions.TWO_PRODUCT_ERROR, commutes=True,
         ),
         _row(
             "mul_add", "ffff", "mul_add({0}, {1}, {2})", CALL, 1, lambda mp, a, b, c: a * b + c,
-            llvm="call double @llvm.fmuladd.f64(double {0}, double {1}, double {2})",
+            llvm="call {f} @llvm.fmuladd.{s}({f} {0}, {f} {1}, {f} {2})",
         ),
-        _row("rounding", "ff", "rounding({0})", CALL, 1.5, lambda mp, a: a * 0),
-        _row("power_of_two", "ff", "power_of_two({0})", CALL, 6, _power_of_two),
+        _row(
+            "rounding", "ff", "rounding({0})", CALL, 1.5, lambda mp, a: a * 0, llvm=instructions.ROUNDING
+        ),
+        _row(
+            "power_of_two", "ff", "power_of_two({0})", CALL, 6, _power_of_two,
+            llvm=instructions.POWER_OF_TWO,
+        ),
         _row(
             "rotated_sin", "ffff", "rotated_sin({0}, {1}, {2})", CALL, 4,
             lambda mp, sine, cosine, quarters: (sine, cosine, -sine, -cosine)[int(quarters) % 4],
+            llvm=instructions.ROTATED_SIN,
         ),
         _row(
             "rotated_cos", "ffff", "rotated_cos({0}, {1}, {2})", CALL, 2,
             lambda mp, sine, cosine, quarters: (cosine, -sine, -cosine, sine)[int(quarters) % 4],
+            llvm=instructions.ROTATED_COS,
         ),
         _row(
-            "lt", "ffb", "{0} < {1}", 6, 1, lambda mp, a, b: a < b, llvm="fcmp olt double {0}, {1}"
+            "lt", "ffb", "{0} < {1}", 6, 1, lambda mp, a, b: a < b, llvm="fcmp olt {f} {0}, {1}"
         ),
         _row(
-            "le", "ffb", "{0} <= {1}", 6, 1, lambda mp, a, b: a <= b, llvm="fcmp ole double {0}, {1}"
+            "le", "ffb", "{0} <= {1}", 6, 1, lambda mp, a, b: a <= b, llvm="fcmp ole {f} {0}, {1}"
         ),
         _row(
-            "eq", "ffb", "{0} == {1}", 6, 1, lambda mp, a, b: a == b, llvm="fcmp oeq double {0}, {1}",
+            "eq", "ffb", "{0} == {1}", 6, 1, lambda mp, a, b: a == b, llvm="fcmp oeq {f} {0}, {1}",
             commutes=True,
         ),
         _row(
             "and", "bbb", "{0} and {1}", 4, 0.5, lambda mp, a, b: a and b,
             numba="{0} & {1}", javascript="({0} && {1})", c="({0} && {1})", jax="logical_and({0}, {1})",
-            llvm="and i1 {0}, {1}", octave="({0} & {1})",
+            llvm="and {b} {0}, {1}", octave="({0} & {1})",
         ),
         _row(
             "or", "bbb", "{0} or {1}", 3, 0.5, lambda mp, a, b: a or b,
             numba="{0} | {1}", javascript="({0} || {1})", c="({0} || {1})", jax="logical_or({0}, {1})",
-            llvm="or i1 {0}, {1}", octave="({0} | {1})",
+            llvm="or {b} {0}, {1}", octave="({0} | {1})",
         ),
         _row(
             "not", "bb", "not {0}", 5, 0.5, lambda mp, a: not a,
             javascript="!({0})", c="!({0})", jax="logical_not({0})", octave="~({0})",
-            llvm="xor i1 {0}, true",
+            llvm="xor {b} {0}, {true}",
         ),
-        _row("extended_only", "bb", "extended_only({0})", CALL, 0, lambda mp, a: False, llvm="false"),
+        _row("extended_only", "bb", "extended_only({0})", CALL, 0, lambda mp, a: False, llvm="{false}"),
         _row(
             "select", "bTTT", "{1} if {0} else {2}", 1, 1, lambda mp, c, a, b: a if c else b,
             javascript="({0} ? {1} : {2})", c="({0} ? {1} : {2})", jax="where({0}, {1}, {2})",
-            octave="select({0}, {1}, {2})", llvm="select i1 {0}, {T} {1}, {T} {2}",
+            octave="select({0}, {1}, {2})", llvm="select {b} {0}, {T} {1}, {T} {2}",
         ),
         _table_row("lookup_piece", "_x", 40, _piece, octave="lookup_piece"),
         _table_row("lookup", "_xc", 12, _lookup, octave="looked_up"),

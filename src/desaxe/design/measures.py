@@ -20,7 +20,6 @@ from ..mechanism.names import LENGTHS, WHOLE, parts, sensitivity
 from ..mechanism.spelling import meant
 from ..peaks.designs import KINDS
 from ..peaks.peak import peak
-from ..runtime.compiled_only import uncompiled
 from ..support.shown import shown
 from .averages import AVERAGES, angle_of, at_angle, average
 from .events.arrays import events_of_arrays
@@ -121,9 +120,8 @@ def _own(name: str, designs: Mapping[str, Any], branch: int) -> Measured:
     """A quantity of a user's own."""
     speed = {"omega0": designs["omega0"]} if designs.get("omega0") is not None else {}
     slopes = {p: sensitivity(name, p) for p in LENGTHS}
-    with uncompiled():
-        given = {n: designs[n] for n in LENGTHS}
-        found = evaluate([name, *slopes.values()], branch=branch, **given, **speed)
+    given = {n: designs[n] for n in LENGTHS}
+    found = evaluate([name, *slopes.values()], branch=branch, **given, **speed)
     return Measured(np.asarray(found[name]), {p: np.asarray(found[slope]) for p, slope in slopes.items()})
 
 

@@ -2,23 +2,19 @@
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from math import prod
-from os import environ
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
-from ..mechanism.inputs import INPUTS, Input, is_good, limit_of
+from ..mechanism.inputs import INPUTS, SAFE, Input, is_good, limit_of
 from ..mechanism.read import read_array
 from ..mechanism.spoken import named, spoken
-from ..runtime.interpreted import are_beyond, are_good, fill_by_points
 from ..runtime.kernels import KernelKey, key_of, tells_unsafe
 from ..runtime.point import point_of
 from ..runtime.request import Request, as_number
 from ..runtime.threads import run_in_blocks
-from ..runtime.tiers import COMPILED, INTERPRETED, VARIABLE, tier_of
-from ..runtime.vectorised import fill_by_arrays
 from ..support.memory import require
 from ..support.shown import shown
 from .call_cache import planned
@@ -33,7 +29,7 @@ def evaluate_arrays(
     wanted: Request, given: Mapping[str, Any], threads: int | None, out: Any
 ) -> dict[str, Array]:
     """The values by requested name, in the broadcast shape."""
-    if environ.get(VARIABLE, COMPILED) == COMPILED and (out is None or type(out) is dict):
+    if out is None or type(out) is dict:
         ready = planned(wanted, given, out, threads)
         if ready is not None:
             return ready
@@ -46,7 +42,7 @@ def evaluate_arrays(
     if all(buffer.size for buffer in buffers.values()):
         scalars = {name: a.item() for name, a in arrays.items() if a.size == 1}
         loops = loops_over({name: a for name, a in arrays.items() if a.size != 1}, shape)
-        fill(wanted, scalars, loops, list(buffers.values()), threads, numpy_pays=True)
+        fill(wanted, scalars, loops, list(buffers.values()), threads)
     return copied_back(places, buffers, out is None)
 
 
@@ -86,6 +82,25 @@ def _not_wholly_bad(name: str, array: Array) -> Array:
         first = spoken(name, array.item(0))
         raise ValueError(f"{name}: every value is bad, the first is {first}; {limit_of(name, array.item(0))}")
     return array
+
+
+def are_good(name: str, array: Array) -> NDArray[np.bool_]:
+    """Mask of the elements that are valid values of an input."""
+    least = INPUTS[name].least
+    good: NDArray[np.bool_] = np.isfinite(array)
+    good = good if least is None else good & (array >= least)
+    return good & ~are_beyond(name, array)
+
+
+def are_beyond(name: str, array: Array) -> NDArray[np.bool_]:
+    """Mask of the elements that `is_beyond` holds for."""
+    least, most = SAFE
+    beyond: NDArray[np.bool_] = np.zeros(array.shape, np.bool_)
+    if name != "theta" and array.size and not (array.min() >= -most and array.max() <= most):
+        beyond = (np.abs(array) > most) & np.isfinite(array)
+    if name == "BC" and array.size and not array.min() >= least:
+        beyond = beyond | ((array > 0.0) & (array < least))
+    return beyond
 
 
 def broadcast_shape(arrays: Mapping[str, Array]) -> tuple[int, ...]:
@@ -153,15 +168,13 @@ def fill(
     loops: Loops,
     outs: Sequence[Array],
     threads: int | None,
-    numpy_pays: bool = False,
     key: KernelKey | None = None,
 ) -> None:
     """Fill contiguous outputs from scalars and the columns along loops.
 
-    `numpy_pays`: a new request need not wait for its kernel, whose digits NumPy's may differ from.
     `key`: the kernel, where these points are a block of more that it was chosen for.
     """
-    if _fill(wanted, scalars, loops, outs, threads, numpy_pays, key):
+    if _fill(wanted, scalars, loops, outs, threads, key):
         return
     sizes, columns, axis_of = loops
     masks = [(are_beyond(name, column), axis_of[name]) for name, column in columns.items()]
@@ -178,7 +191,6 @@ def _fill(
     loops: Loops,
     outs: Sequence[Array],
     threads: int | None,
-    numpy_pays: bool,
     key: KernelKey | None = None,
 ) -> bool:
     """Compute all points; True if the kernel looks for inputs that are beyond their range and finds none."""
@@ -194,17 +206,5 @@ def _fill(
         for out, value in zip(outs, point.run(scalars), strict=True):
             out[...] = value
         return False
-    tier = tier_of(key, outs[0].size, numpy_pays)
-    if tier == COMPILED:
-        values = {**scalars, **columns}
-        counted = run_in_blocks(key, values, outs, threads)
-        if not counted:
-            return hopeful
-        return False
-    flat = [out.reshape(-1) for out in outs]
-    wide = {name: spread(column, axis_of[name], sizes) for name, column in columns.items()}
-    if tier == INTERPRETED:
-        fill_by_points(key, scalars, wide, flat)
-    else:
-        fill_by_arrays(key, scalars, wide, flat)
-    return False
+    left = run_in_blocks(key, {**scalars, **columns}, outs, threads)
+    return hopeful and not left

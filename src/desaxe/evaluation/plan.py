@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 
 from ..mechanism.names import LENGTHS
 from ..mechanism.own import Definition
-from ..runtime.compiled_only import compiled_only
 from ..support.extras import needed
 from .axes import Outer
 from .chunks import Slices, blocks_of, chunk_lengths, longest, pieces, slices_of
@@ -178,7 +177,7 @@ class Plan(NamedTuple):
         if whole:
             before()
             axes = self.outer.axes
-            return {n: a for step in self.all for n, a in _of_pieces(step, axes, threads).items()}
+            return {n: a for step in self.all for n, a in computed(step, axes, threads).items()}
         return self._by_blocks(threads, lengths, before)
 
     def _by_blocks(
@@ -258,12 +257,6 @@ def margin_of(outer: Outer, branch: int, accuracy: Any, dims: Sequence[str]) -> 
 
 
 def computed(step: Step, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
-    """The outputs of a step in a block, by compiled code however small the block is."""
-    with compiled_only():
-        return _of_pieces(step, values, threads)
-
-
-def _of_pieces(step: Step, values: Mapping[str, Array], threads: int | None) -> dict[str, Array]:
     """The outputs of a step in a block; axes that it holds in memory are cut where that changes nothing."""
     if not isinstance(step, Reducing):
         return step.compute(values, threads)

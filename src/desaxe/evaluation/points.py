@@ -20,7 +20,6 @@ from ..mechanism.own import Definition, using
 from ..runtime.kernels import KernelKey, key_of
 from ..runtime.request import Request, request
 from ..runtime.threads import run_in_blocks
-from ..runtime.tiers import COMPILED, tier_of
 from .arrays import copied_back, dtype_of, fill, outputs_for, scratch_for
 from .axes import Outer, require_inputs
 from .labels import Output, attributes
@@ -90,7 +89,7 @@ class Points(NamedTuple):
             buffers = places if out is None else scratch_for(places, values.values())
             self._fill(values, list(buffers.values()), None, threads)
             return copied_back(places, buffers, False)
-        if self.inside is not None and all(shape) and tier_of(self.inside.key, prod(shape)) == COMPILED:
+        if self.inside is not None and all(shape):
             buffers = places if out is None else scratch_for(places, values.values())
             self.fill_inside(values, list(buffers.values()), threads)
             return copied_back(places, buffers, False)
@@ -148,7 +147,7 @@ class Points(NamedTuple):
             columns = {name: spread(column, places[name], shape) for name, column in columns.items()} | whole
             sizes, places = (prod(shape),), dict.fromkeys(columns, 0)
         loops = Loops(sizes, columns, places)
-        fill(self.wanted, scalars, loops, outs, threads, bool(loads), self.key)
+        fill(self.wanted, scalars, loops, outs, threads, self.key)
 
     def fill_inside(self, values: Mapping[str, Array], outs: Sequence[Array], threads: int | None) -> None:
         """Fill the outputs by the kernel that has the loads in it; what rounding leaves open, exactly."""

@@ -7,10 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
-from ..evaluation.arrays import broadcast_shape
+from ..evaluation.arrays import are_good, broadcast_shape
 from ..mechanism.own import using
-from ..runtime.compiled_only import compiled_only
-from ..runtime.interpreted import are_good
+from .compiled import compiled_only
 from .designs import Sought, peaks_of_designs, search_of
 from .programs import Search
 

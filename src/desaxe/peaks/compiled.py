@@ -4,7 +4,9 @@ Its machine code is kept on disk, like that of every kernel. The same text runs 
 and by NumPy, many designs at once, so that nobody waits for a compiler.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -18,7 +20,6 @@ from ..compiler.languages.numba.module import numba_parts
 from ..compiler.languages.python import SCOPE
 from ..runtime.native.modules import Store
 from ..runtime.threads import run_parts
-from ..runtime.tiers import INTERPRETED, NUMPY, forced_tier
 from . import columns
 from . import search as loops
 from .by_arrays import functions_of, whole_blocks
@@ -26,6 +27,9 @@ from .nodes import Array
 from .programs import Search, SearchPrograms, programs_of
 
 Function = Callable[..., object]
+PLAIN, NUMPY, COMPILED = "plain", "numpy", "compiled"
+WAY: str | None = None  # of all searches, if one is forced
+_ONLY: ContextVar[bool] = ContextVar("compiled_only", default=False)
 
 SEARCH = Path(loops.__file__)
 COLUMNS = Path(columns.__file__)
@@ -125,9 +129,19 @@ def run(
 STORE = Store("search", source_of, lambda _, function: SearchKernel(function), MOST_LOADED)
 
 
+@contextmanager
+def compiled_only() -> Iterator[None]:
+    """Search by machine code in a block, however few designs a call has: results do not depend on chunks."""
+    token = _ONLY.set(True)
+    try:
+        yield
+    finally:
+        _ONLY.reset(token)
+
+
 def kernel_for(search: Search, designs: int) -> SearchKernel:
     """The search, compiled if this number of designs would take longer than compiling."""
-    if forced_tier() == INTERPRETED:
+    if WAY == PLAIN:
         return _plain(search)
     if not is_compiled(search, designs):
         return _by_arrays(search) if designs > FEW else _by_loops(search)
@@ -136,9 +150,8 @@ def kernel_for(search: Search, designs: int) -> SearchKernel:
 
 def is_compiled(search: Search, designs: int) -> bool:
     """True if this number of designs goes through machine code."""
-    forced = forced_tier()
-    if forced is not None:
-        return forced not in (INTERPRETED, NUMPY)
+    if _ONLY.get() or WAY is not None:
+        return _ONLY.get() or WAY == COMPILED
     return designs >= BREAK_EVEN or STORE.is_ready(search) or _on_disk(search)
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
 from ..definitions.conditions import conditions_of
+from ..evaluation.arrays import are_good
 from ..loads.load import Load
 from ..mechanism.catalogue import has, of_design, quantity
 from ..mechanism.constants import constants
@@ -18,7 +19,6 @@ from ..mechanism.names import LENGTHS, STATUS, sensitivity
 from ..mechanism.own import Register, register, using
 from ..mechanism.own_lines import has_kinks
 from ..runtime.accuracy import accuracy_of
-from ..runtime.interpreted import are_good
 from ..runtime.kernels import STRUCTURAL_ZEROS
 from ..runtime.request import Request, is_steady, request
 from ..runtime.threads import run_parts

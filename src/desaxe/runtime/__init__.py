@@ -4,7 +4,6 @@ request        names and inputs, checked
 accuracy       the accuracies and their bounds
 specialise     the Program of a request, after all passes
 point          a function of floats for single points
-interpreted    few points in plain Python
 kernels        compiled loops for arrays
 cache          the folder of compiled kernels
 wide_margins   which designs may take the plain forms
@@ -12,8 +11,5 @@ executor       kernels in machine code
 left_over      points that a kernel leaves over, answered again
 native_calls   a kernel as a ufunc, a C function, a function for numba
 threads        blocks of an array shared by threads
-tiers          plain Python, NumPy or compiled code for a request
-vectorised     Programs in NumPy, for the first call of a request
-compiled_only  a block in which compiled code is required
 native         machine code: made once by numba, stored, loaded by LLVM alone
 """

@@ -7,7 +7,7 @@ from ctypes import CFUNCTYPE, c_char_p, c_int64
 from typing import Any
 
 from ..compiler.kernel import Kernel
-from ..compiler.llvm.machine import Code, compiled
+from ..compiler.llvm.machine import Code, compiled, lanes
 from ..compiler.llvm.nest import HEAD, NAME, Entry, module_text
 from ..mechanism.constants import limit_of
 from ..support.forks import IMPORTS, ForkSafeLock
@@ -38,7 +38,7 @@ class CompiledKernel:
         if arguments is None:
             arguments = [name for name, axis in kernel.inputs.items() if axis is not None]
         self.entry = Entry(kernel, tuple(arguments), angle, limit)
-        self.code: Code = compiled(module_text(self.entry), NAME)
+        self.code: Code = compiled(module_text(self.entry, lanes()), NAME)
         self.arguments, self.scalars, self.axes = self.entry.arguments, self.entry.scalars, kernel.axes
         self.call: Callable[[bytes, bytes, bytes, bytes], int] = _CALL(self.code.address)
         self._pack_data = struct.Struct(f"{HEAD}q{len(self.scalars)}d").pack

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.runtime import executor, tiers
+from desaxe.runtime import executor
 from desaxe.runtime.kernels import kernel_of
 from desaxe.scenes.parts.grid import plan_of_grid
 from tests.example_scenes import COMPACTOR, SMALL
@@ -49,9 +49,11 @@ def free(scene, section, name, value):
 
 def test_concentric_at_constant_speed():
     plan = dx.explain(CONCENTRIC)
-    assert plan["run"]["way"] == "plain Python"
-    assert steps(plan) == {"derivation": 2702, "slice": 89, "fold": 62, "plain": 23}
-    assert plan["operations"] == {"straight": 23, "per_point": 23.0, "total": 23 * 721}
+    assert plan["run"]["way"] == "compiled"
+    assert steps(plan) == {"derivation": 2702, "slice": 89, "fold": 62, "plain": 23, "write out": 50}
+    work = plan["operations"]
+    assert work["straight"] == 50
+    assert 40 < work["per_point"] == work["total"] / 721 < 50  # a few run once a row
     saved = {one["what"]: one["saved"] for one in plan["skipped"]}
     assert saved == {"branch = +1": 1, "alpha = 0": 14, "ec = 0": 1}
 
@@ -59,7 +61,7 @@ def test_concentric_at_constant_speed():
 def test_concentric_with_a_rod_hardly_longer_than_the_crank():
     """Then nothing may cancel: the stable form."""
     plan = dx.explain(free(CONCENTRIC, "mechanism", "BC", 0.1251))
-    assert steps(plan) == {"derivation": 2702, "slice": 89, "fold": 62}
+    assert steps(plan) == {"derivation": 2702, "slice": 89, "fold": 62, "write out": 56}
     saved = {one["what"]: one["saved"] for one in plan["skipped"]}
     assert saved == {"branch = +1": 2, "alpha = 0": 14, "ec = 0": 11}
 
@@ -123,13 +125,12 @@ def _size(axis):
 # ---- how it runs ---------------------------------------------------------------------------------
 
 
-def test_the_break_even_is_the_one_that_holds(monkeypatch):
+def test_arrays_are_compiled_and_points_are_not(monkeypatch):
     monkeypatch.setattr(executor, "CompiledKernel", None)  # whoever compiles fails
-    points = {"start": 0, "stop": 1, "num": tiers.BREAK_EVEN - 1}
-    few = free(CONCENTRIC, "motion", "theta", points)
-    assert dx.explain(few)["run"]["way"] == "plain Python"
-    dx.scene(few).run()
-    many = free(CONCENTRIC, "motion", "theta", {**points, "num": tiers.BREAK_EVEN})
+    alone = free(CONCENTRIC, "motion", "theta", 1.0)
+    assert dx.explain(alone)["run"]["way"] == "plain Python"
+    dx.scene(alone).run()
+    many = free(CONCENTRIC, "motion", "theta", {"start": 0.25, "stop": 1, "num": 3})
     assert dx.explain(many)["run"]["way"] == "compiled"
     with pytest.raises(TypeError):
         dx.scene(many).run()
@@ -215,8 +216,7 @@ Loops, from outside in
   in all                  23          23
 
 Execution
-  kernel   none: plain Python over math, nothing is compiled, numba is not imported
-  why      1 point; below 2,000 a compilation does not pay
+  kernel   none: a point is plain Python over math, nothing is compiled
   memory   9 bytes of results, 8 bytes of inputs
   results  returned, not written to a file"""
     )

@@ -123,10 +123,9 @@ def inputs_of(scene):
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", SCENES)
-def test_a_module_alone_gives_what_desaxe_gives(name, alone, monkeypatch):
+def test_a_module_alone_gives_what_desaxe_gives(name, alone):
     """A run, arrays, a point, and one function for each output, for the @njit functions of others."""
     points, found = points_of(SCENES[name]), alone[name]
-    monkeypatch.setenv("DESAXE_TIER", "compiled" if points else "interpreted")
     dataset = dx.scene(SCENES[name]).run().dataset
     assert set(found["run"]) == set(dataset.data_vars) - {"margin"}
     for output, values in found["run"].items():

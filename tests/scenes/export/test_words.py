@@ -242,12 +242,12 @@ for word = {words} addpath(word{1}); printf("%.17g\\n", feval(word{1}, 0.5)); rm
 """
 
 
-def by_python(folder, words, monkeypatch):
+def by_python(folder, words):
     """In the folder where Python looks first."""
     return run(sys.executable, "-P", "-c", PYTHON.replace("{words}", repr(words)), cwd=folder)
 
 
-def by_octave(folder, words, monkeypatch):
+def by_octave(folder, words):
     """Each from a folder of its own: in one they would be called by each other."""
     for word in words:
         (folder / word).mkdir()

@@ -14,98 +14,10 @@ declare double @exp(double)
 declare double @log(double)
 declare double @pow(double, double)
 
-; ---- operations --------------------------------------------------------------------------------------
-
-; The rounding error of a + b (Knuth).
-define internal double @two_sum_error(double %a, double %b) alwaysinline {
-  %sum = fadd double %a, %b
-  %of_b = fsub double %sum, %a
-  %of_a = fsub double %sum, %of_b
-  %lost_a = fsub double %a, %of_a
-  %lost_b = fsub double %b, %of_b
-  %error = fadd double %lost_a, %lost_b
-  ret double %error
-}
-
-define internal double @two_product_error(double %a, double %b) alwaysinline {
-  %product = fmul double %a, %b
-  %negative = fneg double %product
-  %error = call double @llvm.fma.f64(double %a, double %b, double %negative)
-  ret double %error
-}
-
-; 2^-51 |a|
-define internal double @rounding(double %a) alwaysinline {
-  %size = call double @llvm.fabs.f64(double %a)
-  %bound = fmul double 0x3CC0000000000000, %size
-  ret double %bound
-}
-
-; The power of two that is not below a, from 2^-960 to 2^960 (Rump).
-define internal double @power_of_two(double %a) alwaysinline {
-  %large = fcmp olt double %a, 0x7BF0000000000000
-  %below = select i1 %large, double %a, double 0x7BF0000000000000
-  %small = fcmp ogt double %below, 0x03F0000000000000
-  %size = select i1 %small, double %below, double 0x03F0000000000000
-  %wide = fmul double 0x4340000000000000, %size
-  %sum = fadd double %wide, %size
-  %step = fsub double %sum, %wide
-  %some = fcmp ogt double %step, 0.0
-  %power = select i1 %some, double %step, double %size
-  ret double %power
-}
-
-define internal double @hypot(double %a, double %b) alwaysinline {
-  %x = call double @llvm.fabs.f64(double %a)
-  %y = call double @llvm.fabs.f64(double %b)
-  %less = fcmp olt double %x, %y
-  %most = select i1 %less, double %y, double %x
-  %least = select i1 %less, double %x, double %y
-  %ratio = fdiv double %least, %most
-  %square = fmul double %ratio, %ratio
-  %sum = fadd double 1.0, %square
-  %root = call double @llvm.sqrt.f64(double %sum)
-  %product = fmul double %most, %root
-  %both = fadd double %most, %least
-  %some = fcmp ogt double %least, 0.0
-  %size = select i1 %some, double %product, double %both
-  %nothing = fsub double %most, %most
-  %infinite = fcmp une double %nothing, 0.0
-  %result = select i1 %infinite, double %both, double %size
-  ret double %result
-}
-
-; Quarter turns: beyond 2^52 the last bits of a double are those of the whole number added to it.
-define internal double @rotated_sin(double %sine, double %cosine, double %quarters) alwaysinline {
-  %shifted = fadd double %quarters, 0x4338000000000000
-  %turns = bitcast double %shifted to i64
-  %value = call double @rotated(double %cosine, double %sine, i64 %turns, i64 %turns)
-  ret double %value
-}
-
-define internal double @rotated_cos(double %sine, double %cosine, double %quarters) alwaysinline {
-  %shifted = fadd double %quarters, 0x4338000000000000
-  %turns = bitcast double %shifted to i64
-  %next = add i64 %turns, 1
-  %value = call double @rotated(double %sine, double %cosine, i64 %turns, i64 %next)
-  ret double %value
-}
-
-define internal double @rotated(double %if_odd, double %if_even, i64 %turns, i64 %halves) alwaysinline {
-  %odd = trunc i64 %turns to i1
-  %value = select i1 %odd, double %if_odd, double %if_even
-  %bits = bitcast double %value to i64
-  %half = lshr i64 %halves, 1
-  %sign = shl i64 %half, 63
-  %signed = xor i64 %bits, %sign
-  %result = bitcast i64 %signed to double
-  ret double %result
-}
-
 ; ---- tables ------------------------------------------------------------------------------------------
 
 ; The number of the piece at x: where the knots are even, the first guess is right; else a binary search.
-define internal double @lookup_piece(double %x, ptr %knots, ptr %rows, i64 %n, double %way) alwaysinline {
+define internal double @lookup_piece(double %x, ptr %knots, ptr %rows, i64 %n, double %way) noinline {
   %last = add i64 %n, -1
   %end = getelementptr double, ptr %knots, i64 %last
   %first = load double, ptr %knots
@@ -155,7 +67,7 @@ end_search:
   ret double %number
 }
 
-define internal double @from_knot(double %x, ptr %knots, i64 %n, i64 %number) alwaysinline {
+define internal double @from_knot(double %x, ptr %knots, i64 %n, i64 %number) noinline {
   %back = add i64 %n, 1
   %returns = icmp uge i64 %number, %back
   %there = sub i64 %number, %back
@@ -169,7 +81,7 @@ define internal double @from_knot(double %x, ptr %knots, i64 %n, i64 %number) al
   ret double %s
 }
 
-define internal double @lookup(double %x, ptr %knots, ptr %rows, i64 %n, double %piece) alwaysinline {
+define internal double @lookup(double %x, ptr %knots, ptr %rows, i64 %n, double %piece) noinline {
   %number = fptoui double %piece to i64
   %s = call double @from_knot(double %x, ptr %knots, i64 %n, i64 %number)
   %row = getelementptr [4 x double], ptr %rows, i64 %number
@@ -189,7 +101,7 @@ define internal double @lookup(double %x, ptr %knots, ptr %rows, i64 %n, double 
   ret double %value
 }
 
-define internal double @lookup_slope(double %x, ptr %knots, ptr %rows, i64 %n, double %piece) alwaysinline {
+define internal double @lookup_slope(double %x, ptr %knots, ptr %rows, i64 %n, double %piece) noinline {
   %number = fptoui double %piece to i64
   %s = call double @from_knot(double %x, ptr %knots, i64 %n, i64 %number)
   %row = getelementptr [4 x double], ptr %rows, i64 %number
@@ -225,13 +137,13 @@ loop:
   store double %value, ptr %to
   %next = add nuw nsw i64 %i, 1
   %more = icmp ult i64 %next, %n
-  br i1 %more, label %loop, label %end, !llvm.loop !0
+  br i1 %more, label %loop, label %end
 end:
   ret ptr %buffer
 }
 
-; Eight doubles, of which n are copied and the others are the last of these.
-define internal void @fill(ptr noalias %buffer, ptr noalias %from, i64 %n) noinline {
+; Some doubles, of which n are copied and the others are the last of these.
+define internal void @fill(ptr noalias %buffer, ptr noalias %from, i64 %n, i64 %all) noinline {
   %last = add i64 %n, -1
   br label %loop
 loop:
@@ -242,8 +154,8 @@ loop:
   %to = getelementptr double, ptr %buffer, i64 %i
   store double %value, ptr %to
   %next = add nuw nsw i64 %i, 1
-  %more = icmp ult i64 %next, 8
-  br i1 %more, label %loop, label %end, !llvm.loop !0
+  %more = icmp ult i64 %next, %all
+  br i1 %more, label %loop, label %end
 end:
   ret void
 }
@@ -260,7 +172,7 @@ loop:
   store double %value, ptr %at
   %next = add nuw nsw i64 %i, 1
   %more = icmp ult i64 %next, %n
-  br i1 %more, label %loop, label %end, !llvm.loop !0
+  br i1 %more, label %loop, label %end
 end:
   ret void
 }
@@ -277,26 +189,9 @@ loop:
   store i8 %value, ptr %at
   %next = add nuw nsw i64 %i, 1
   %more = icmp ult i64 %next, %n
-  br i1 %more, label %loop, label %end, !llvm.loop !0
-end:
-  ret void
-}
-
-; How many of n flags are set.
-define internal i64 @count(ptr noalias %flags, i64 %n) noinline {
-  br label %loop
-loop:
-  %i = phi i64 [ 0, %0 ], [ %next, %loop ]
-  %sum = phi i64 [ 0, %0 ], [ %total, %loop ]
-  %at = getelementptr i8, ptr %flags, i64 %i
-  %flag = load i8, ptr %at
-  %one = zext i8 %flag to i64
-  %total = add i64 %sum, %one
-  %next = add nuw nsw i64 %i, 1
-  %more = icmp ult i64 %next, %n
   br i1 %more, label %loop, label %end
 end:
-  ret i64 %total
+  ret void
 }
 
 ; The indices of the flagged of n points; the last is repeated up to a multiple of eight, whose number is told.
@@ -346,7 +241,7 @@ loop:
   store double %value, ptr %target
   %next = add nuw nsw i64 %i, 1
   %more = icmp ult i64 %next, %n
-  br i1 %more, label %loop, label %end, !llvm.loop !0
+  br i1 %more, label %loop, label %end
 end:
   ret void
 }
@@ -363,7 +258,7 @@ loop:
   store double %value, ptr %target
   %next = add nuw nsw i64 %i, 1
   %more = icmp ult i64 %next, %n
-  br i1 %more, label %loop, label %end, !llvm.loop !0
+  br i1 %more, label %loop, label %end
 end:
   ret void
 }
@@ -380,32 +275,9 @@ loop:
   store i8 %value, ptr %target
   %next = add nuw nsw i64 %i, 1
   %more = icmp ult i64 %next, %n
-  br i1 %more, label %loop, label %end, !llvm.loop !0
-end:
-  ret void
-}
-
-; How many of n angles are finite and beyond a limit.
-define internal i64 @beyond(ptr noalias %angles, i64 %n, double %limit) noinline {
-  %any = icmp sgt i64 %n, 0
-  br i1 %any, label %loop, label %end
-loop:
-  %i = phi i64 [ 0, %0 ], [ %next, %loop ]
-  %sum = phi i64 [ 0, %0 ], [ %total, %loop ]
-  %at = getelementptr double, ptr %angles, i64 %i
-  %angle = load double, ptr %at
-  %size = call double @llvm.fabs.f64(double %angle)
-  %large = fcmp olt double %limit, %size
-  %finite = fcmp olt double %size, 0x7FF0000000000000
-  %both = and i1 %large, %finite
-  %one = zext i1 %both to i64
-  %total = add i64 %sum, %one
-  %next = add nuw nsw i64 %i, 1
-  %more = icmp ult i64 %next, %n
   br i1 %more, label %loop, label %end
 end:
-  %count = phi i64 [ 0, %0 ], [ %total, %loop ]
-  ret i64 %count
+  ret void
 }
 
 ; Call a repair of the points that are left over, and clear the flags that a NaN raises: it is an answer.
@@ -426,7 +298,3 @@ lower:
 end:
   ret void
 }
-
-!0 = distinct !{!0, !1, !2}
-!1 = !{!"llvm.loop.vectorize.enable", i1 false}
-!2 = !{!"llvm.loop.unroll.disable"}

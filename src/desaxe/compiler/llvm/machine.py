@@ -80,30 +80,33 @@ _UNUSED: deque[Any] = deque()
 _NUMBERS = count()
 
 
-def compiled(text: str, name: str, slp: bool = True) -> Code:
+def compiled(text: str, name: str) -> Code:
     """The function of this name of a text, as machine code for this processor."""
     with LOCK:
-        return _linked(emitted(text, slp=slp), name)
+        return _linked(emitted(text), name)
 
 
-def emitted(text: str, target: Any = None, slp: bool = True) -> bytes:
+def emitted(text: str, target: Any = None) -> bytes:
     """The object file of a text, for a processor (see `target_machine`); this one without.
 
-    slp   vectorise straight code, too, which takes LLVM long where there is much of it
+    Texts have vectors and no value twice: LLVM's passes would find nothing, and take as long as all the rest.
     """
     llvm = _llvm()
     with LOCK:
         target = target or _host()
-        module = llvm.parse_assembly(text)
+        module = llvm.parse_assembly(text, llvm.create_context())
         module.triple, module.data_layout = target.triple, str(target.target_data)
         module.verify()
-        options = llvm.create_pipeline_tuning_options(speed_level=3)
-        options.loop_vectorization, options.slp_vectorization = True, slp
-        options.loop_interleaving, options.loop_unrolling = False, False
-        builder = llvm.create_pass_builder(target, options)
-        builder.getModulePassManager().run(module, builder)
         data: bytes = target.emit_object(module)
         return data
+
+
+@cache
+def lanes() -> int:
+    """How many doubles the vectors of this processor's code have."""
+    llvm = _llvm()
+    with LOCK:
+        return 8 if llvm.get_host_cpu_features().get("avx512f") else 4
 
 
 def target_machine(triple: str | None = None, cpu: str = "", features: str = "") -> Any:

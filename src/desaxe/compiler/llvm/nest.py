@@ -11,16 +11,19 @@ data      the words of HEAD, then the scalars
 It returns the number of points left to the caller: undecided ones, and angles beyond a limit.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from ..kernel import Kernel
+from ..program import Line
 from .ir import BYTES, STORED, WIDE, Body, Loop, loop_of
 from .two_forms import APART, block_loop, either_loop
 
 NAME = "kernel"
 FUNCTIONS = Path(__file__).with_name("functions.ll").read_text()
+ANGLE = "angle"
 HEAD = 2  # words: the address that repairs points, and that of `feclearexcept`; or 0
 BLOCK = 512  # points that are copied at a time
 
@@ -39,15 +42,19 @@ class Entry(NamedTuple):
         return tuple(name for name, axis in self.kernel.inputs.items() if axis is None)
 
 
-def module_text(entry: Entry) -> str:
+def module_text(entry: Entry, lanes: int) -> str:
     """The text of a kernel."""
     kernel = entry.kernel
-    points, texts = _innermost(kernel)
+    points, texts = _innermost(kernel, lanes)
     tables = [_table_loop(k, table.kernel) for k, table in enumerate(kernel.tables)]
-    texts += [loop.text(table.kernel.types) for loop, table in zip(tables, kernel.tables, strict=True)]
+    texts += [loop.text(table.kernel.types, lanes) for loop, table in zip(tables, kernel.tables, strict=True)]
     kernels = [kernel, *(table.kernel for table in kernel.tables)]
     for loop, own in zip([points, *tables], kernels, strict=True):
-        texts.append(loop.padded(own.types, [STORED[own.types.get(name, "f64")] for name in own.outputs]))
+        texts.append(
+            loop.padded(own.types, [STORED[own.types.get(name, "f64")] for name in own.outputs], lanes)
+        )
+    if entry.angle is not None:
+        texts += [_beyond(entry).text({}, lanes), _beyond(entry).padded({}, (), lanes)]
     points, *tables = (loop._replace(name=f"{loop.name}_rows") for loop in (points, *tables))
     body = Body(kernel.types, {})
     frame = _Frame(body, entry)
@@ -58,7 +65,7 @@ def module_text(entry: Entry) -> str:
     return "\n\n".join([FUNCTIONS, *texts, frame.text()])
 
 
-def _innermost(kernel: Kernel) -> tuple[Loop, list[str]]:
+def _innermost(kernel: Kernel, lanes: int) -> tuple[Loop, list[str]]:
     """The loop over the last axis, and the texts of all that it needs."""
     last, close = kernel.axes - 1, kernel.close
     arrays = [name for name, axis in kernel.inputs.items() if axis == last]
@@ -66,11 +73,22 @@ def _innermost(kernel: Kernel) -> tuple[Loop, list[str]]:
     lines = kernel.levels[-1]
     if close is None:
         loop = loop_of("points", lines, kernel.outputs, arrays)
-        return loop, [loop.text(kernel.types)]
+        return loop, [loop.text(kernel.types, lanes)]
     stable = loop_of("stable", close.lines, close.outputs, arrays, close.undecided)
     if not close.test_lines:
-        return either_loop(kernel, loop_of("plain", lines, kernel.outputs, arrays), stable)
-    return block_loop(kernel, arrays, stable)
+        return either_loop(kernel, loop_of("plain", lines, kernel.outputs, arrays), stable, lanes)
+    return block_loop(kernel, arrays, stable, lanes)
+
+
+def _beyond(entry: Entry) -> Loop:
+    """The loop that counts finite angles beyond the limit."""
+    lines = [
+        Line("size", "abs", (ANGLE,)),
+        Line("large", "lt", (entry.limit, "size"), "bool"),
+        Line("finite", "lt", ("size", math.inf), "bool"),
+        Line("beyond", "and", ("large", "finite"), "bool"),
+    ]
+    return loop_of("beyond", lines, (), (ANGLE,), "beyond")
 
 
 def _table_loop(number: int, kernel: Kernel) -> Loop:
@@ -113,8 +131,8 @@ class _Frame:
 
     def leave_large_angles(self, angles: str, n: str) -> None:
         """Count angles beyond the limit."""
-        limit = self.body.value(self.entry.limit)
-        self.leave(self.body.emit(f"call i64 @beyond(ptr {angles}, i64 {n}, double {limit})"))
+        loop = _beyond(self.entry)._replace(name="beyond_rows")
+        self.leave(loop.call(self.body, n, {ANGLE: angles}, ()))
 
     def text(self) -> str:
         """The function: at its end a repair is called, and the processor's flags are cleared."""

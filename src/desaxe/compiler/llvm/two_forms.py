@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from ..kernel import Kernel
 from ..program import Line
-from .ir import LANES, STORED, WIDE, Body, Loop, loop_of
+from .ir import STORED, WIDE, Body, Loop, loop_of
 
 BIGGEST = 512  # points of a block: their inputs and outputs stay in the first-level cache
 STACK = 32_768  # doubles that all buffers of a block may take
@@ -17,7 +17,7 @@ APART = 72  # doubles between buffers: at a multiple of 4096 bytes a store holds
 FLAG = "fails_test"
 
 
-def either_loop(kernel: Kernel, plain: Loop, stable: Loop) -> tuple[Loop, list[str]]:
+def either_loop(kernel: Kernel, plain: Loop, stable: Loop, lanes: int) -> tuple[Loop, list[str]]:
     """The loop that runs one of two, and the texts of all three."""
     assert kernel.close is not None
     points = _joined("points", (plain, stable), len(kernel.outputs), [kernel.close.test])
@@ -27,22 +27,22 @@ def either_loop(kernel: Kernel, plain: Loop, stable: Loop) -> tuple[Loop, list[s
     for label, loop in (("wide", plain), ("close", stable)):
         body.label(label)
         body.do(f"ret i64 {loop.call(body, '%n', _inputs(points), outputs)}")
-    texts = [loop.text(kernel.types) for loop in (plain, stable)]
+    texts = [loop.text(kernel.types, lanes) for loop in (plain, stable)]
     return points, [*texts, _function(points, kernel, body.rows)]
 
 
-def block_loop(kernel: Kernel, arrays: Sequence[str], stable: Loop) -> tuple[Loop, list[str]]:
+def block_loop(kernel: Kernel, arrays: Sequence[str], stable: Loop, lanes: int) -> tuple[Loop, list[str]]:
     """The loop over blocks of points, and the texts of all that it calls."""
     close = kernel.close
     assert close is not None
     flag = Line(FLAG, "not", (close.test,), "bool")
-    plain = loop_of("plain", (*kernel.levels[-1], flag), (*kernel.outputs, FLAG), arrays)
-    tests = loop_of("tests", (*close.test_lines, flag), (FLAG,), arrays)
+    plain = loop_of("plain", (*kernel.levels[-1], flag), (*kernel.outputs, FLAG), arrays, FLAG)
+    tests = loop_of("tests", (*close.test_lines, flag), (FLAG,), arrays, FLAG)
     loops = plain, tests, stable
     points = _joined("points", loops, len(kernel.outputs))
     kinds = [STORED[kernel.types.get(name, "f64")] for name in kernel.outputs]
-    rows = _blocks(points, kernel, plain, tests, stable, kinds)
-    return points, [*(loop.text(kernel.types) for loop in loops), _function(points, kernel, rows)]
+    rows = _blocks(points, kernel, plain, tests, stable, kinds, lanes)
+    return points, [*(loop.text(kernel.types, lanes) for loop in loops), _function(points, kernel, rows)]
 
 
 def _joined(name: str, loops: Sequence[Loop], outputs: int, more: Sequence[str] = ()) -> Loop:
@@ -69,7 +69,7 @@ def _function(points: Loop, kernel: Kernel, rows: Sequence[str]) -> str:
 
 
 def _blocks(
-    points: Loop, kernel: Kernel, plain: Loop, tests: Loop, stable: Loop, kinds: Sequence[str]
+    points: Loop, kernel: Kernel, plain: Loop, tests: Loop, stable: Loop, kinds: Sequence[str], lanes: int
 ) -> list[str]:
     """The instructions of the loop over blocks."""
     body = _scope(points, kernel)
@@ -80,7 +80,7 @@ def _blocks(
     buffers |= dict(zip(answers, kinds, strict=True))
     for buffer, kind in buffers.items():
         body.do(f"{buffer} = alloca [{block + APART} x {kind}], align 64")
-    body.rows += f"""  %last = sub i64 %n, {LANES}
+    body.rows += f"""  %last = sub i64 %n, {lanes}
   br label %blocks
 blocks:
   %at = phi i64 [ 0, %0 ], [ %stop, %done ]
@@ -91,22 +91,24 @@ blocks:
 block:
   %start = call i64 @llvm.smin.i64(i64 %at, i64 %last)
   %rest = sub i64 %n, %start
-  %size = call i64 @llvm.smin.i64(i64 %rest, i64 {block})""".splitlines()
+  %size = call i64 @llvm.smin.i64(i64 %rest, i64 {block})
+  %odd = and i64 %size, {lanes - 1}
+  %exact = icmp eq i64 %odd, 0""".splitlines()
     there = {name: body.element("double", f"%{name}.from", "%start") for name in points.reads}
     outputs = [body.element(kind, f"%to.{k}", "%start") for k, kind in enumerate(kinds)]
     body.do("br i1 %fail, label %ahead, label %first")
     body.label("ahead")
-    tests.call(body, "%size", there, ["%flags"])
-    body.rows += """  %failed = call i64 @count(ptr %flags, i64 %size)
-  %all_fail = icmp eq i64 %failed, %size
+    failed = tests.call(body, "%size", there, ["%flags"])
+    body.rows += f"""  %same = icmp eq i64 {failed}, %size
+  %all_fail = and i1 %same, %exact
   br i1 %all_fail, label %close, label %first
 first:""".splitlines()
-    plain.call(body, "%size", there, [*outputs, "%flags"])
-    body.rows += """  %count = call i64 @count(ptr %flags, i64 %size)
-  %none = icmp eq i64 %count, 0
+    count = plain.call(body, "%size", there, [*outputs, "%flags"])
+    body.rows += f"""  %none = icmp eq i64 {count}, 0
   br i1 %none, label %done, label %some
 some:
-  %every = icmp eq i64 %count, %size
+  %most = icmp eq i64 {count}, %size
+  %every = and i1 %most, %exact
   br i1 %every, label %close, label %mixed
 close:""".splitlines()
     in_close = stable.call(body, "%size", there, outputs)
@@ -117,7 +119,7 @@ mixed:
         body.do(f"call void @compress(ptr {room}, ptr {there[name]}, ptr %indices, i64 %filled)")
     in_mixed = stable.call(body, "%filled", rooms, answers)
     for output, answer, kind in zip(outputs, answers, kinds, strict=True):
-        body.do(f"call void @expand_{kind}(ptr {output}, ptr {answer}, ptr %indices, i64 %count)")
+        body.do(f"call void @expand_{kind}(ptr {output}, ptr {answer}, ptr %indices, i64 %filled)")
     body.rows += f"""  br label %done
 done:
   %own = phi i64 [ 0, %first ], [ {in_close}, %close ], [ {in_mixed}, %mixed ]

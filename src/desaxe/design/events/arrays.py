@@ -14,7 +14,6 @@ from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
 from ...mechanism.program import Variant
-from ...runtime.compiled_only import uncompiled
 from ...runtime.specialise import specialise
 from ...runtime.wide_margins import have_wide_margins
 from ...support.roots import roots
@@ -60,11 +59,8 @@ def _velocities(
     side = np.repeat([direction * branch for direction in VELOCITIES.values()], omega.size // 2)
     ends = [np.stack(stroke_ends(values, way, branch))[:, turns] for way in (1, -1)]
     growing = np.where((side > 0) == (omega >= 0.0), *(np.tile(end, 2) for end in ends))
-    with uncompiled():
-        theta, within = _fastest(growing[0], growing[1], here) if omega.size else (omega, omega > 0.0)
-        found = (
-            evaluate(names, theta=theta, omega0=omega, **here) if omega.size else dict.fromkeys(names, omega)
-        )
+    theta, within = _fastest(growing[0], growing[1], here) if omega.size else (omega, omega > 0.0)
+    found = evaluate(names, theta=theta, omega0=omega, **here) if omega.size else dict.fromkeys(names, omega)
     told = {name: side * found[name] for name in names} | {
         "theta": np.where(theta < -np.pi / 2, theta + 2 * np.pi, theta)
     }

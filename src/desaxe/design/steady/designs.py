@@ -10,7 +10,6 @@ T the motor's torque, L what loads and gravity hold against it, R the torque of 
 """
 
 from collections.abc import Mapping, Sequence
-from contextlib import nullcontext
 from math import pi
 from typing import Any, NamedTuple
 
@@ -22,7 +21,6 @@ from ...loads.angles import meeting_angles
 from ...loads.load import Load
 from ...mechanism.closed.angles import dead_centres
 from ...mechanism.names import LENGTHS
-from ...runtime.compiled_only import uncompiled
 from ...support.panels import padded
 from .source import TorqueSource
 
@@ -30,7 +28,6 @@ Array = NDArray[Any]
 CREEP = 1e-100  # rad/s: loads know the way of turning, inertia does not act
 INSIDE = 1e-5  # of a panel: so far from its ends a value belongs to it
 WIDEST = 0.65  # rad
-MANY = 50_000  # points, for which compiling pays
 NOTHING = 1e-12  # of the inertia elsewhere
 
 
@@ -95,8 +92,7 @@ class DesignRows(NamedTuple):
         inputs: dict[str, Any] = {n: self.each(v, x.ndim) for n, v in self.numbers.items()}
         inputs |= {**self.loads, **other}
         present = {n: v for n, v in inputs.items() if v is not None}
-        with uncompiled() if x.size < MANY else nullcontext():
-            found = evaluate(list(names), theta=self.theta(x), branch=self.branch, **present)
+        found = evaluate(list(names), theta=self.theta(x), branch=self.branch, **present)
         return {name: np.broadcast_to(found[name], x.shape) for name in names}
 
     def lengths(self) -> list[Array]:

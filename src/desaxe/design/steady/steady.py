@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...evaluation.arrays import as_array, broadcast_shape
+from ...evaluation.arrays import are_good, as_array, broadcast_shape
 from ...evaluation.under_loads.loaded import loads_of
 from ...loads.angles import turns_of
 from ...mechanism.inputs import INPUTS, Input
@@ -15,7 +15,6 @@ from ...mechanism.names import LENGTHS
 from ...mechanism.read import read_array
 from ...mechanism.slips import warn_of_slips
 from ...mechanism.spoken import UNITS, named
-from ...runtime.interpreted import are_good
 from ...runtime.request import as_number, check_common
 from ...support.shown import shown
 from .designs import DesignRows

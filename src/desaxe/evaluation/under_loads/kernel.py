@@ -22,7 +22,6 @@ from ...mechanism.names import LENGTHS, STATUSES
 from ...runtime.kernels import KernelKey, key_of, plain_of
 from ...runtime.request import Request
 from ...runtime.threads import run_in_blocks
-from ...runtime.tiers import forced_tier
 from ..axes import Outer
 from .request import LEAST, are_extreme_under, table_arrays, under_loads
 
@@ -120,7 +119,7 @@ def in_kernel(
 ) -> UnderLoads | None:
     """The kernel of a plan's names over dimensions of a grid; None where it takes more than one."""
     given, axes = outer.given, outer.axes
-    few = prod(axes[name].size for name in along) < LEAST and forced_tier() is None
+    few = prod(axes[name].size for name in along) < LEAST
     if few or accuracy == "extended" or not along or are_extreme_under(plan.loads, axes):
         return None
     wanted = under_loads(plan, given, branch, accuracy)

@@ -11,8 +11,8 @@ from ...loads.load import Load, OverTheta, OverY
 from ...loads.resolve import LoadPlan
 from ...mechanism.inputs import SAFE
 from ...mechanism.load_lines import LoadLines, TurningSense, Under
-from ...runtime.interpreted import are_beyond
 from ...runtime.request import Request, request
+from ..arrays import are_beyond
 
 Array = NDArray[Any]
 

@@ -23,11 +23,10 @@ from ...mechanism.own import using
 from ...mechanism.program import digest
 from ...mechanism.quantity_units import UnitSystem
 from ...runtime.executor import is_ready
-from ...runtime.kernels import KernelKey, kernel_of
+from ...runtime.kernels import KernelKey, has_large_angles, kernel_of
 from ...runtime.request import Request
 from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available
-from ...runtime.tiers import BREAK_EVEN, COMPILED, forced_tier, tier_ahead
 from ...support.forks import IMPORTS
 from ...sweeps.request import sweep_of
 from ..content import Content
@@ -178,7 +177,9 @@ def _input(name: str, value: Value, units: UnitSystem) -> dict[str, Any]:
 def _grid(content: Content, plan: Plan) -> dict[str, Any]:
     """The grid of the outputs: its passes, its loops, how it runs."""
     found = _kernel_of(plan)
-    compiled = tier_ahead(found.key, found.points) == COMPILED
+    compiled = bool(found.key.axis_of)  # a point is plain Python
+    angles = plan.outer.axes.get("theta")
+    large = found.key.far or (angles is not None and has_large_angles(angles.reshape(-1)))
     loops = _compiled_loops(found) if compiled else _plain_loops(found)
     straight = sum(loop.operations for loop in loops if not loop.close)
     total = sum(loop.work for loop in loops)
@@ -194,7 +195,7 @@ def _grid(content: Content, plan: Plan) -> dict[str, Any]:
         "operations": {"straight": straight, "per_point": total / found.points, "total": total},
         "reduction": _reduction(plan),
         "loads": [load._asdict() for load in loads],
-        "run": _run(content, found, compiled),
+        "run": _run(content, found, compiled, large),
         "memory": _memory(plan, found),
     }
 
@@ -237,15 +238,12 @@ def _loop(loop: LoopCost, points: int) -> dict[str, Any]:
     return {**row, "along": list(loop.along), "values": list(loop.values), "per_point": loop.work / points}
 
 
-def _run(content: Content, found: GridKernel, compiled: bool) -> dict[str, Any]:
-    """The execution of the grid: tier, threads, what is cached."""
+def _run(content: Content, found: GridKernel, compiled: bool, large: bool) -> dict[str, Any]:
+    """The execution of the grid: how, on how many threads, what is cached."""
     threads = max(1, min(content.threads or available(), found.points // LEAST_BLOCK, found.sizes[0]))
     return {
         "way": "compiled" if compiled else "plain Python",
-        "tier": tier_ahead(found.key, found.points),
-        "forced": forced_tier(),
-        "break_even": BREAK_EVEN,
-        "far_angles": found.key.far,
+        "large_angles": large,
         "wide_margins": found.key.form.wide_margins,
         "threads": threads if compiled else 1,
         "cached": "memory" if is_ready(found.key) else "no",

@@ -134,28 +134,22 @@ def _values(loop: Mapping[str, Any]) -> str:
 
 
 def _how(plan: Mapping[str, Any]) -> str:
-    """The section on execution: tier, memory."""
+    """The section on execution: threads, memory."""
     run = plan["run"]
     lines = ["Execution"]
-    points = f"{plan['points']:,} point{'s' if plan['points'] != 1 else ''}"
-    forced = f"{points}; DESAXE_TIER = {run['forced']}" if run["forced"] else ""
     if run["way"] == "compiled":
         told = "in this process already" if run["cached"] == "memory" else "not compiled yet"
         threads = f"{run['threads']} threads" if run["threads"] > 1 else "one thread"
         lines.append(f"  kernel   compiled in float64, {threads}: {told}")
-        why = f"{points}; from {run['break_even']:,} on (requested in one process) a kernel pays"
-        lines.append(f"  why      {forced or why}")
+        lines.append(f"  points   {plan['points']:,}")
         numbers = [one["name"] for one in plan["inputs"] if one.get("value")]
         if numbers:
             while_roomy = " while AB + |ec| < 7/8 BC" if run["wide_margins"] else ""
             reused = f"other values of {', '.join(numbers)} (but 0) compile nothing new{while_roomy}"
             lines += _wrapped("reuse", [reused])
     else:
-        how = "NumPy" if run["tier"] == "numpy" else "plain Python over math"
-        lines.append(f"  kernel   none: {how}, nothing is compiled, numba is not imported")
-        why = f"{points}; below {run['break_even']:,} a compilation does not pay"
-        lines.append(f"  why      {forced or why}")
-    if run["far_angles"]:
+        lines.append("  kernel   none: a point is plain Python over math, nothing is compiled")
+    if run["large_angles"]:
         lines.append("  angles   some are so large that sine and cosine are those of the C library (slower)")
     lines += [row for load in plan["loads"] for row in _wrapped("load", [_load(load)])]
     memory = plan["memory"]

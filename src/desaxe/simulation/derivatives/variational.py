@@ -20,7 +20,6 @@ from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 
 from ...evaluation.evaluate import evaluate
-from ...runtime.compiled_only import uncompiled
 from ..equations import Resting, state_of
 from ..events import Q
 from ..friction import Rubbing
@@ -72,8 +71,7 @@ class Variations:
     ) -> dict[str, Array]:
         """Quantities along the motion, by `evaluate`; `other` inputs replace those given."""
         shape = np.shape(theta)
-        with uncompiled():
-            found = evaluate(list(names), theta=theta, omega=omega, alpha=alpha, **{**self.given, **other})
+        found = evaluate(list(names), theta=theta, omega=omega, alpha=alpha, **{**self.given, **other})
         return {name: np.broadcast_to(value, shape) for name, value in found.items()}
 
     # ---- panels -----------------------------------------------------------------------------

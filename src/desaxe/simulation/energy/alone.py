@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
-from ...runtime.compiled_only import uncompiled
 from ..history import Ended, add_slopes, instants_of, result_of
 from ..result import FAILED, LIMIT, Event, Simulation
 from .many import FollowedMotions
 from .motion import MotionOverAngle
+from .one_design import one_design
 from .panels import Designs
 from .pushed import arcs
 from .serves import ENERGY
@@ -110,6 +110,6 @@ def _power(designs: Designs, found: FollowedMotions) -> float:
     """The power of torque and loads at the end: of both energies."""
     theta, omega, alpha = found.theta[:, -1:], found.omega[0, -1], found.alpha[0, -1]
     names = "M_eff", "M_eff_wrt_theta", "potential_energy_wrt_theta"
-    with uncompiled():
+    with one_design():
         inertia, bend, gravity = (v.item() for v in designs.values(theta, names).values())
     return float((inertia * alpha + 0.5 * bend * omega * omega + gravity) * omega)

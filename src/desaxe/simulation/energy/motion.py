@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from ...loads.load import Load
 from ...mechanism.names import LENGTHS, LOADS
-from ...runtime.compiled_only import uncompiled
 from ...support.deadline import Deadline
 from ...support.interrupts import stopped_early
 from ..events import NEAR, STANDSTILL, Mark, angles_of, failure, time_of, words_of
 from ..model import Model
 from ..result import DONE, FAILED, LIMIT, Event
 from .many import TOO_WIDE, FollowedMotions, follow_many
+from .one_design import one_design
 from .panels import Designs
 from .path import Path, path_of
 from .serves import served
@@ -76,7 +76,7 @@ class MotionOverAngle(NamedTuple):
         most = np.array([np.inf])
 
         def work() -> FollowedMotions:
-            with uncompiled():
+            with one_design():
                 return follow_many(self.designs, times, self.rtol, most)
 
         return _heeded(work, most, Deadline("simulate", None)) if self.long else work()
@@ -152,7 +152,7 @@ def _path(
 ) -> tuple[Path, FollowedMotions, str]:
     """The pieces up to the last instant, and why they end before it if the time is over."""
     brief, several = np.array([min(most, BRIEF)]), np.array([most])
-    with uncompiled():
+    with one_design():
         path, found = path_of(designs, times, rtol, brief)
         if path.status != FAILED or brief[0] == most:
             return path, found, ""

@@ -1,7 +1,6 @@
 """Inertia and torque of many designs at the nodes of panels, over the coordinate of their motion."""
 
 from collections.abc import Mapping, Sequence
-from contextlib import nullcontext
 from math import ceil, nan, pi
 from typing import Any, NamedTuple
 
@@ -14,11 +13,11 @@ from ...loads.load import Load, OverTheta, OverY
 from ...mechanism.closed import TURN
 from ...mechanism.constants import constants
 from ...mechanism.names import LENGTHS
-from ...runtime.compiled_only import compiled_only, is_uncompiled
 from ...support.panels import NODE, NODES, nodes_of, padded
 from ..loops.compiled import DesignFamily
 from ..model import fixed_zeros, form_of
 from .loops.compiled import at_angles, names_of, quantities, rows_of
+from .one_design import is_one_design
 
 Array = NDArray[np.float64]
 LOST = 2.0**-53  # of an angle: its rounding, in the last terms of a series
@@ -105,7 +104,7 @@ class Designs(NamedTuple):
         loaded = isinstance(self.force, Load)
         names = names_of(loaded, wrt)[edges is None]
         slope, values = np.empty(x.shape), np.empty((len(x), len(names) + more, x.shape[1]))
-        if is_uncompiled():
+        if is_one_design():
             self._by_arrays(names, edges, x, slope, values)
             return AtPlaces(names, values, slope)
         number = 0.0 if isinstance(self.torque, Load) else self.torque
@@ -143,17 +142,16 @@ class Designs(NamedTuple):
     def values(self, theta: Array, names: Sequence[str] = ()) -> dict[str, Array]:
         """The quantities of the designs at rest, each at angles of its own, which are two or more.
 
-        Always by the same kernel: no digit hangs on the other designs; one that is alone by NumPy.
+        Always by the same kernel: no digit hangs on the other designs.
         """
         inputs = {name: v if isinstance(v, float) else v[:, None] for name, v in self.inputs.items()}
-        alone = is_uncompiled()
-        if len(theta) == 1 and not alone:  # of one row its inputs would be numbers of another kernel
+        # of one row its inputs would be numbers of another kernel
+        if len(theta) == 1 and not is_one_design():
             inputs = {n: v if isinstance(v, float) else np.repeat(v, 2, axis=0) for n, v in inputs.items()}
             theta = np.repeat(theta, 2, axis=0)
         state: dict[str, Any] = {"theta": theta, "omega": 0.0, "alpha": 0.0, **inputs}
-        with nullcontext() if alone else compiled_only():
-            known = [*QUANTITIES, "Y_wrt_theta"] if isinstance(self.force, Load) else list(QUANTITIES)
-            found = evaluate(list(names) or known, branch=self.branch, threads=1, **state)
+        known = [*QUANTITIES, "Y_wrt_theta"] if isinstance(self.force, Load) else list(QUANTITIES)
+        found = evaluate(list(names) or known, branch=self.branch, threads=1, **state)
         return {name: values[: len(self.theta0)] for name, values in found.items()}
 
     def place(self, x: Array) -> tuple[Array, Any]:
