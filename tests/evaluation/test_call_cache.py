@@ -5,6 +5,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.evaluation import arrays, call_cache
+from desaxe.support.recent import Recent
 
 SIZES = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
 NAMES = ["V_C", "a_C", "status"]
@@ -16,7 +17,7 @@ def both(monkeypatch):
 
     Plans are made anew: one that refused a test's points takes no other test's either.
     """
-    monkeypatch.setattr(call_cache, "_CALLS", {})
+    monkeypatch.setattr(call_cache, "_CALLS", Recent(8))
 
     def run(names, **inputs):
         taken = []

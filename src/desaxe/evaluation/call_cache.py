@@ -21,6 +21,7 @@ from ..runtime.specialise import plain_form
 from ..runtime.threads import LONGEST_BLOCK, least_of, run_parts
 from ..runtime.wide_margins import of_numbers
 from ..support.memory import require
+from ..support.recent import Recent
 
 Array = NDArray[Any]
 FLOAT, STATUS = np.dtype(np.float64), np.dtype(np.int8)
@@ -49,7 +50,8 @@ class _Plan(NamedTuple):
     refused: list[int]  # the sizes of calls of which points were left over
 
 
-_CALLS: dict[int, _Call] = {}
+MOST_CALLS = 256  # requests that are remembered
+_CALLS: Recent[Request, _Call] = Recent(MOST_CALLS)
 _ONE = struct.Struct("q").pack
 
 
@@ -57,7 +59,7 @@ def planned(
     wanted: Request, given: Mapping[str, Any], out: Any = None, threads: int | None = None
 ) -> dict[str, Array] | None:
     """The values by name; None if the call is no ordinary one, or its kernel is not in memory."""
-    call = _CALLS.get(id(wanted)) or _new_call(wanted)
+    call = _CALLS.get(wanted) or _new_call(wanted)
     numbers: dict[str, float] = {}
     columns: dict[str, Array] = {}
     kinds: list[bool | None] = []
@@ -185,7 +187,7 @@ def _new_call(wanted: Request) -> _Call:
     known = wanted.accuracy != "extended" and all(name in inputs for name in LENGTHS)
     known = known and plain_form(wanted.names, wanted.form, wanted.fixed) is not None
     call = _Call(wanted, inputs, of_numbers(wanted.form) if known else None, {})
-    _CALLS[id(wanted)] = call  # which keeps the request, and with it its id
+    _CALLS[wanted] = call
     return call
 
 
