@@ -23,5 +23,6 @@ motions      `python -m benchmarks.motions`: simulations
 steady       `python -m benchmarks --only steady`: steady states beside simulating them
 integrators  `--only integrators`: many motions beside heyoka
 loads        `--only loads`: grids, points and peaks under loads that vary with the motion
+generated    `--only generated`: the modules of generated/ beside the library
 scale        `python -m benchmarks.scale`: sweeps
 """

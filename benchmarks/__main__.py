@@ -19,7 +19,8 @@ STARTS = "starts"  # no race: processes of desaxe alone
 STEADY = "steady"  # no race: beside simulating
 LOADS = "loads"  # no race: beside a constant force
 INTEGRATORS = "integrators"  # no race: beside heyoka's Taylor series
-TABLES = (STEADY, LOADS, INTEGRATORS)
+GENERATED = "generated"  # no race: beside the library
+TABLES = (STEADY, LOADS, INTEGRATORS, GENERATED)
 DESCRIPTION = """\
 desaxe beside NumPy, numba, numexpr, JAX, CasADi, heyoka and C at the same works, on one core and on all:
 time as a multiple of desaxe's, error against the truth. The peers come with the extra `peers`, C with gcc;
@@ -64,7 +65,7 @@ def _parser() -> argparse.ArgumentParser:
         metavar="WORK",
         help=f"this work alone; repeatable; {STARTS}: desaxe's first calls and second processes; "
         f"{STEADY}: steady states beside simulating them; {LOADS}: loads that vary beside a constant force; "
-        f"{INTEGRATORS}: simulations beside heyoka",
+        f"{INTEGRATORS}: simulations beside heyoka; {GENERATED}: generated/ beside the library",
     )
     parser.add_argument(
         "--accuracy",
@@ -101,6 +102,7 @@ def _listed() -> str:
     works.append(f"  {STARTS:11}first calls and second processes of desaxe")
     works.append(f"  {STEADY:11}steady states on a motor beside simulating until two turns agree")
     works.append(f"  {INTEGRATORS:11}simulations of many designs beside heyoka's Taylor series")
+    works.append(f"  {GENERATED:11}the modules of generated/ beside the library")
     missing = {one.name: "" if one.is_here else f"not here: needs {one.needs}" for one in CONTENDERS}
     return "\n".join(
         ["works", *works, "contenders", *(f"  {n:18}{why}".rstrip() for n, why in missing.items())]

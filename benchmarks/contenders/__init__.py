@@ -7,7 +7,6 @@ A peak is the largest magnitude at any of 720 angles, which is what everyone but
 with_c        SymPy's C, by gcc
 with_casadi   CasADi
 with_desaxe   desaxe, at each accuracy
-with_generated  a module of desaxe.generated
 with_heyoka   heyoka
 with_jax      JAX
 with_nothing  storing a result, single operations
@@ -65,7 +64,6 @@ CONTENDERS = (
         Contender(f"desaxe {tier}", "with_desaxe", "desaxe", "desaxe", (("accuracy", tier),))
         for tier in ("standard", "extended")
     ),
-    Contender("desaxe generated", "with_generated", "numba", "desaxe"),
 )
 MACHINE = Contender(LIMITS, "with_nothing", "numba", "limit")
 BY_NAME = {one.name: one for one in (*CONTENDERS, MACHINE)}
