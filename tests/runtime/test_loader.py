@@ -41,8 +41,8 @@ def test_a_process_that_loads_imports_no_compiler(code, tmp_path):
     (tmp_path / "code").write_bytes(code)
     script = (
         "import sys; from ctypes import CFUNCTYPE, c_int64\n"
-        "from desaxe.runtime.native.machine_code import Code, load, machine\n"
-        f"loaded = load(Code((-2,), (8,), open({str(tmp_path / 'code')!r}, 'rb').read()))\n"
+        "from desaxe.runtime.native.machine_code import StoredCode, load, machine\n"
+        f"loaded = load(StoredCode((-2,), (8,), open({str(tmp_path / 'code')!r}, 'rb').read()))\n"
         "print(CFUNCTYPE(c_int64, c_int64)(loaded.address)(20), machine().startswith('llvmlite'))\n"
         "print(*(name for name in ('numba', 'numpy', 'llvmlite.binding') if name in sys.modules))\n"
     )

@@ -13,6 +13,7 @@
     kernel      a loop nest whose bodies are Programs
     llvm        machine code in memory, what the library itself runs
     languages   Python, numba, C, jax, Octave and JavaScript, one file or folder each
+    llvm        machine code in memory, what the library itself runs
     forms       plain and stable lines as one program, set apart in a kernel
     stages      a program as two loops, so that a processor sees more than one point at a time
 

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from ..support.extras import explained
 from ..support.files import as_path, read_bytes
+from ..support.forks import IMPORTS
 from ..support.shown import printable, shown
 from ..units.text import plain_number
 
@@ -254,7 +255,7 @@ def _with_single_blanks(line: str) -> str:
 
 
 def _cells_of_sheet(path: Path) -> Cells:
-    with explained(f"the workbook {printable(path)}"):
+    with explained(f"the workbook {printable(path)}"), IMPORTS:
         import pandas
     frame = pandas.read_excel(path, header=None, dtype=object)
     rows = [

@@ -96,7 +96,7 @@ def _compiled(key: KernelKey) -> CompiledKernel:
 
 
 def compiled_kernel(key: KernelKey, arguments: Sequence[str] | None = None) -> CompiledKernel:
-    """A key's kernel, which nobody else keeps; `arguments` orders the inputs that are arrays."""
+    """Compile a key's kernel for one owner; `arguments` orders the inputs that are arrays."""
     written_out = key.accuracy != "extended" and not key.far
     angle = "theta" if written_out and "theta" in dict(key.axis_of) else None
     return CompiledKernel(kernel_of(key), arguments, angle, limit_of(key.accuracy))

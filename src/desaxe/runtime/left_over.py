@@ -1,4 +1,4 @@
-"""Points that a kernel leaves over, answered again: large angles, and those that hang on rounding.
+"""A second answer for points that a kernel leaves over: large angles, and those that rounding decides.
 
 An angle beyond what the written-out sine reduces exactly takes that of the C library. The last angle that a
 mechanism reaches falls between two doubles, and next to it the sine's last bits say on which side an angle

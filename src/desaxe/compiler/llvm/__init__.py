@@ -2,6 +2,7 @@
 
 ir             operations and loops as LLVM's text
 nest           a Kernel as a module: the entry, its loops, its two forms
+two_forms      loops over blocks of points of which each takes one of two forms
 functions.ll   what they call
 machine        text to machine code, which the caller keeps alive
 """

@@ -176,7 +176,7 @@ def _solved(a: Array, b: Array) -> Array:
 
 
 class Brackets(NamedTuple):
-    """Where gains fall through 0: the design of each, an energy at the start, and the bracket around it."""
+    """Changes of the sign of gains: the design of each, an energy at the start, and the bracket around it."""
 
     design: Array
     E0: Array
@@ -192,11 +192,11 @@ class Scan(NamedTuple):
     gains: Array
 
     def found(self) -> Brackets:
-        """Where gains fall through 0: there a motion is stable."""
+        """The brackets in which gains fall through 0: of stable motions."""
         return self._changes(1.0)
 
     def rises(self) -> Brackets:
-        """Where they rise through 0: there a motion is unstable."""
+        """The brackets in which they rise through 0: of unstable motions."""
         return self._changes(-1.0)
 
     def _changes(self, before: float) -> Brackets:

@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from typing import Any
 
 from ...support.forks import IMPORTS, imported
-from .machine_code import DOUBLE, ENTRY, NO_MEMORY, WHOLE, Code, Loaded, outside
+from .machine_code import DOUBLE, ENTRY, NO_MEMORY, WHOLE, Loaded, StoredCode, outside
 
 NAME = "desaxe_native"  # of the module of a text
 # A text that sets it to True has loops of a few rounds that should run in vectors: LLVM unrolls such loops
@@ -98,7 +98,7 @@ def _collected_later() -> Iterator[None]:
 
 
 @_collected_later()
-def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Loaded:
+def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> StoredCode | Loaded:
     """Compile a text that defines `function` and `signature`; loaded at once if it is not self-contained.
 
     `scope` has names that the text uses and does not define, such as a user's own function.
@@ -141,7 +141,7 @@ def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Load
         sizes = tuple(kind.dtype.bitwidth // 8 if rank >= 0 else 8 for kind, rank in kinds)
         alone = _alone(library, entry, namespace.get(SHORT_LOOPS, False))
         if alone is not None:
-            return Code(ranks, sizes, alone)
+            return StoredCode(ranks, sizes, alone)
         return Loaded(_within(target, library, entry), ranks, sizes, library)
 
 

@@ -30,7 +30,7 @@ MATHEMATICS = (
 MEMORY = ("PyMem_RawMalloc", "PyMem_RawFree")
 
 
-class Code(NamedTuple):
+class StoredCode(NamedTuple):
     """Machine code, the ranks of what its entry takes (see `DOUBLE`, `WHOLE`), and the bytes of an item."""
 
     ranks: tuple[int, ...]
@@ -69,7 +69,7 @@ def outside() -> dict[str, int]:
     return found
 
 
-def load(code: Code) -> Loaded | None:
+def load(code: StoredCode) -> Loaded | None:
     """Load machine code; None if this process cannot."""
     address, keeper = loader().load(code.machine, ENTRY, outside())
     return Loaded(address, code.ranks, code.item_sizes, keeper) if address else None

@@ -20,7 +20,7 @@ from ...support.forks import IMPORTS, ForkSafeLock
 from ...support.interrupts import finished
 from ...support.recent import Recent
 from .. import cache as _cache
-from .machine_code import DOUBLE, NO_MEMORY, Code, Loaded, load, machine
+from .machine_code import DOUBLE, NO_MEMORY, Loaded, StoredCode, load, machine
 
 SUFFIX = ".code"
 _HEAD = "desaxe machine code 3"
@@ -73,7 +73,7 @@ def _native(kind: str, text: str) -> Native:
         loaded = _from_disk(path)
         if loaded is None:
             made = _compiled(text, kind, {})
-            if isinstance(made, Code):
+            if isinstance(made, StoredCode):
                 _to_disk(path, made)
             loaded = _ready(made)
         return Native(loaded)
@@ -89,15 +89,15 @@ def native_here(text: str, scope: Mapping[str, Any]) -> Native:
     return finished(made)
 
 
-def _compiled(text: str, title: str, scope: Mapping[str, Any]) -> Code | Loaded:
+def _compiled(text: str, title: str, scope: Mapping[str, Any]) -> StoredCode | Loaded:
     with IMPORTS:
         from .compiled_text import compile_text
 
     return compile_text(text, title, scope)
 
 
-def _ready(made: Code | Loaded) -> Loaded:
-    loaded = load(made) if isinstance(made, Code) else made
+def _ready(made: StoredCode | Loaded) -> Loaded:
+    loaded = load(made) if isinstance(made, StoredCode) else made
     if loaded is None:
         raise ImportError("machine code that was just compiled cannot be loaded")
     return loaded
@@ -181,18 +181,18 @@ def faults(folder: Path) -> dict[Path, str]:
     return found
 
 
-def read_code(name: str, data: bytes) -> Code | None:
+def read_code(name: str, data: bytes) -> StoredCode | None:
     """The machine code in a file of this name; None where it is damaged or for another machine."""
     with suppress(ValueError, KeyError, TypeError, AttributeError, RecursionError):
         head, _, code = data.partition(b"\n")
         told = json.loads(head)
         ranks, sizes = (tuple(map(int, told[key])) for key in ("ranks", "item_sizes"))
         if told["machine"] == machine() and told["sha256"] == _digest(name, ranks, sizes, code):
-            return Code(ranks, sizes, code)
+            return StoredCode(ranks, sizes, code)
     return None
 
 
-def _to_disk(path: Path, made: Code) -> None:
+def _to_disk(path: Path, made: StoredCode) -> None:
     """Store machine code; if that fails, the next process compiles again."""
     head: dict[str, Any] = {"machine": machine(), "sha256": _digest(path.name, *made)}
     head |= {"ranks": made.ranks, "item_sizes": made.item_sizes}

@@ -50,7 +50,7 @@ def read_number(row: Input, key: str, written: float | str, units: UnitSystem) -
 
 
 def with_unit_in(units: UnitSystem, name: str, written: float | str) -> str:
-    """What is written for a quantity as a text, with the unit that a plain number has."""
+    """The text of a written quantity, with its unit where it is a plain number."""
     text = written if isinstance(written, str) else repr(written)
     return str(with_unit_of(f"1 {units.of(name).unit}", text))
 

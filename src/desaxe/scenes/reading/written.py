@@ -1,4 +1,4 @@
-"""What the texts and plain numbers of a scene say of its units: those of its texts, and slips."""
+"""Units in the texts of a scene, and slips of units in its plain numbers."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
