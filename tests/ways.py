@@ -1,4 +1,4 @@
-"""How answers of arrays are compared, and the ways that searches of peaks can take."""
+"""Comparisons of answers of arrays, and the roads that searches of peaks can take."""
 
 import math
 

@@ -37,7 +37,7 @@ class Kinds(NamedTuple):
 
 
 class _Names(dict[str, str]):
-    """What stands in the instructions of an operation: types, names, constants."""
+    """The arguments of an instruction's text: types, names, constants."""
 
     def __init__(self, kinds: Kinds, generic: str) -> None:
         end = "f64" if kinds.lanes == 1 else f"v{kinds.lanes}f64"

@@ -103,7 +103,7 @@ def emitted(text: str, target: Any = None) -> bytes:
 
 @cache
 def lanes() -> int:
-    """How many doubles the vectors of this processor's code have."""
+    """The number of doubles in a vector of this processor's code."""
     llvm = _llvm()
     with LOCK:
         return 8 if llvm.get_host_cpu_features().get("avx512f") else 4
