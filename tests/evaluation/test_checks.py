@@ -10,6 +10,7 @@ import pint
 import pytest
 
 import desaxe as dx
+from desaxe.evaluation.values import values
 from desaxe.mechanism import inputs as known
 from desaxe.mechanism.read import in_si
 from tests.ways import POINT, SIZES, columns
@@ -281,3 +282,14 @@ def test_a_derivative_that_constant_speed_makes_zero_is_nan_without_a_mechanism(
 
 def test_a_derivative_of_the_crank_alone_needs_no_mechanism():
     assert dx.evaluate("V_B_X_wrt_alpha", theta=1.57, AB=0.125, omega=10.0) == 0.0
+
+
+@pytest.mark.parametrize("theta", [1.0, np.array([1.0, 1.1])])
+def test_an_input_that_is_none_is_another_request_than_one_that_is_there(theta):
+    """Virtual work: a force on the slider costs the torque -F_Y dY/dtheta."""
+    machine = {"theta": theta, "ec": 0.01, "AB": 0.1, "BC": 0.3, "omega0": 10.0, "alpha": 0.0, "omega": None}
+    without = values("T_in", machine | {"m_slider": 1.0, "F_Y": None})
+    force = dx.evaluate("T_in", **machine, m_slider=1.0, F_Y=100.0) - without
+    u = 0.01 + 0.1 * np.sin(theta)
+    slope = -0.1 * np.sin(theta) - u * 0.1 * np.cos(theta) / np.sqrt(0.3**2 - u**2)
+    assert force == pytest.approx(-100.0 * slope, rel=1e-12)

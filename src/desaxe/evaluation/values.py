@@ -35,9 +35,9 @@ def values(
         check_common(given, branch, threads)
     if type(accuracy) is not str or accuracy != "standard":
         accuracy = accuracy_of(accuracy)
-    key: tuple[Any, ...] = wanted, tuple(given), omega is not None, is_steady(given.get("alpha")), branch
+    present = tuple([name for name, value in given.items() if value is not None])
     now = register()
-    key = *key, accuracy, given.get("theta") is None, speed_given, now
+    key = wanted, present, is_steady(given.get("alpha")), branch, accuracy, now
     if not speed_given and omega is None and "status" in wanted:
         given = {**given, "omega0": standstill(wanted, given, now)}
     known = _KNOWN.get(key)
@@ -67,7 +67,7 @@ def values(
 
 LEAST, MOST = SAFE
 MOST_KNOWN = 1024  # requests that are remembered
-_KNOWN: dict[tuple[Any, ...], tuple[Request, PointFunction]] = {}
+_KNOWN: dict[Any, tuple[Request, PointFunction]] = {}
 
 
 _ARRAY: list[type] = [object]  # NumPy's type of array, when it is known
