@@ -10,7 +10,7 @@ from shutil import copytree
 from tests.reliability.processes import START, run, warm
 from tests.reliability.rig import CRASHED, GOOD, HUNG, WRONG, Trial, Verdict
 
-PROGRAM = START + "\nprint(value())\n"
+PROGRAM = START + "\nprint(repr(motions()))\n"
 
 
 @cache

@@ -199,16 +199,6 @@ def test_status_and_nan_are_those_of_standard():
     assert np.array_equal(np.isnan(other["a_C"]), np.isnan(standard["a_C"]))
 
 
-@pytest.mark.parametrize("theta", [1.0, np.linspace(0, 7, 300)])
-def test_fast_is_deprecated(theta):
-    """The warning names the new spelling and the line of the call."""
-    design = {"theta": theta, "ec": 0.3, "AB": 0.125, "BC": 0.5, "omega0": 10.0}
-    with pytest.warns(DeprecationWarning, match="accuracy='standard'") as told:
-        found = dx.evaluate("a_C", accuracy="fast", **design)
-    assert {warning.filename for warning in told} == {__file__}
-    assert np.array_equal(found, dx.evaluate("a_C", **design))
-
-
 def test_an_angle_that_extended_cannot_reduce_is_told():
     point = {"ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": 10.0, "accuracy": "extended"}
     far = 2e9

@@ -224,8 +224,8 @@ def test_values_of_inputs():
 def test_an_accuracy_is_a_name_or_an_error():
     assert dx.scene({**SMALL, "accuracy": 1e-9}) == dx.scene(SMALL)
     assert dx.scene({**SMALL, "accuracy": 1e-15}) == dx.scene({**SMALL, "accuracy": "extended"})
-    with pytest.warns(DeprecationWarning, match="accuracy='standard'"):
-        assert dx.scene({**SMALL, "accuracy": "fast"}) == dx.scene(SMALL)
+    with pytest.raises(ValueError, match="it is one of standard, extended"):
+        dx.scene({**SMALL, "accuracy": "fast"})
 
 
 def test_masses_and_loads():

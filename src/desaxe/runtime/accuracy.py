@@ -1,28 +1,22 @@
 """The accuracies by name, and the cheapest one that keeps a given error.
 
 The error of a value is relative, and in proportion to 1 + the sum of its condition numbers: what the
-last digits of the inputs change anyway is not counted against it. `fast` is deprecated, another name of
-`standard`: kernels in float32 took 0.8 to 1.0 of its time, for arrays are read and written as doubles.
+last digits of the inputs change anyway is not counted against it.
 """
 
 from typing import Any
 
 from ..mechanism.constants import double_constants
 from ..mechanism.spoken import named, spoken
-from ..support.deprecation import deprecated
 from ..support.shown import shown
 
 ACCURACIES = ("standard", "extended")
-ALIASES = {"fast": "standard"}
 # Accuracy -> the error that it keeps everywhere; the cheaper one first.
 BOUNDS = {"standard": 8 * 2.0**-52, "extended": 2 * 2.0**-52}
 
 
 def accuracy_of(asked: Any) -> str:
     """The accuracy of this name, or the cheapest one that keeps a given error everywhere."""
-    if isinstance(asked, str) and asked in ALIASES:
-        deprecated(f"accuracy={asked!r}", f"accuracy={ALIASES[asked]!r} is what it does")
-        return ALIASES[asked]
     if isinstance(asked, str) and asked in ACCURACIES:
         return asked
     if not isinstance(asked, (int, float)) or isinstance(asked, bool):
