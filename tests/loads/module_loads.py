@@ -54,23 +54,3 @@ def columns(given, count):
     ec[43] = np.nan
     rest = random.uniform(0.03, 0.05, count), random.choice([-3.0, 3.0, 0.0], count)
     return dict(zip(INPUTS, (theta, ec, *rest), strict=True))
-
-
-def wrong_tables(given):
-    """Knots and coefficients that are no table, by their fault."""
-    x, c = (np.array(column, float) for column in given.arrays())
-    swapped, thrice = x.copy(), x.copy()
-    swapped[[1, 2]] = swapped[[2, 1]] + [1e-6, 0.0]
-    thrice[:3] = thrice[0]
-    found = {
-        "one knot": (x[:1], c),
-        "out of order": (swapped, c),
-        "thrice": (thrice, c),
-        "no number": (np.where(np.arange(x.size) == 1, np.nan, x), c),
-        "infinite": (np.where(np.arange(x.size) == x.size - 1, np.inf, x), c),
-        "no coefficient": (x, np.where(np.arange(c.size) == 5, np.nan, c)),
-        "infinite coefficient": (x, np.where(np.arange(c.size) == 9, -np.inf, c)),
-    }
-    if given.over == "theta":
-        found["longer than a period"] = (np.where(np.arange(x.size) == x.size - 1, x + given.period, x), c)
-    return found

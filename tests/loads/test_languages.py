@@ -9,39 +9,27 @@ from desaxe.compiler.languages.python import compile_python
 from desaxe.compiler.passes.trigonometry import expand_trigonometry
 from desaxe.compiler.program import tables_in
 from desaxe.mechanism.constants import constants
-from desaxe.scenes.export.portable import Form, Order, module_of
+from desaxe.scenes.export.portable import Order, module_of
 from desaxe.scenes.schema import SceneError
-from tests.compiler.languages.runners import SLOW, compiled
+from tests.compiler.languages.runners import compiled
 from tests.compiler.languages.tools import imported, jax_in_doubles
 from tests.effort import cases
-from tests.loads.module_loads import FIXED, INPUTS, KINDS, NAMES, SHAPES, columns, load, scene, wrong_tables
+from tests.loads.module_loads import FIXED, INPUTS, KINDS, NAMES, SHAPES, columns, load, scene
 
-FORMS = ("frozen", "arguments")
-OPEN = [language.name for language in languages() if language.open_tables]
 DEFAULT = {
-    ("c", "frozen", "inner both ways"), ("c", "arguments", "theta"), ("c", "arguments", "Y both ways"),
-    ("c", "arguments", "outer"), ("octave", "frozen", "Y"), ("octave", "arguments", "inner both ways"),
-    ("javascript", "frozen", "theta"), ("javascript", "arguments", "outer both ways"),
+    ("c", "inner both ways"), ("c", "theta"), ("c", "outer"), ("octave", "Y"), ("octave", "inner both ways"),
+    ("javascript", "theta"), ("javascript", "outer both ways"),
 }  # fmt: skip
 
 
 def tried():
-    """Every language, form and kind, of which DESAXE_THOROUGH=all runs all."""
-    names = [one.name for one in languages()]
-    every = [
-        (n, form, kind) for n in names for form in FORMS for kind in KINDS if form != "arguments" or n in OPEN
-    ]
-    marked = [
+    """Every language and kind, of which DESAXE_THOROUGH=all runs all."""
+    every = [(one.name, kind) for one in languages() for kind in KINDS]
+    return [
         pytest.param(*row, marks=pytest.mark.sampled if row in DEFAULT else pytest.mark.thorough)
         for row in every
-        if row in DEFAULT or cases(0, row == ("jax", "frozen", "inner both ways"), 1)
+        if row in DEFAULT or cases(0, row == ("jax", "inner both ways"), 1)
     ]
-    return marked
-
-
-def options(form):
-    """The options of `compile`; a language that has one form alone is not asked."""
-    return {"tables": form} if form == "arguments" else {}
 
 
 def compare(found, given, load):
@@ -55,53 +43,22 @@ def compare(found, given, load):
         assert near.all(), (name, [c[~near][:3] for c in given.values()], own[~near][:3], truth[~near][:3])
 
 
-@pytest.mark.parametrize(("language", "form", "kind"), tried())
-def test_every_language_has_the_values_of_evaluate(language, form, kind, tmp_path):
-    """One module whose tables are arguments serves all shapes, and tables of another length."""
-    shapes = SHAPES if form == "arguments" else (SHAPES[len(kind) % 3],)
-    module = compiled(language, tmp_path, scene(load(kind, shapes[-1])), INPUTS, **options(form))
-    for shape in shapes:
-        one = load(kind, shape)
-        given = columns(one, cases(100, 2_000, 10_000))
-        tables = {"F_Y": one.arrays()} if form == "arguments" else {}
-        compare(module([*given.values()], tables), given, one)
-
-
-@pytest.mark.parametrize(
-    "language", [pytest.param(n, marks=[pytest.mark.thorough] if n in SLOW else []) for n in OPEN]
-)
-def test_what_is_no_table_is_bad_input(language, tmp_path):
-    """Status 4, NaN where the load counts, and the motion keeps its values."""
-    kind = "theta" if language == "c" else "outer both ways"
-    one = load(kind, "kinked")
-    given = {name: column[44:64] for name, column in columns(one, 64).items()}
-    known = dx.evaluate(["Y"], **given, BC=0.064)
-    wrong = wrong_tables(one)
-    if language not in ("c", "javascript"):  # some tenths of a second each
-        wrong = {name: wrong[name] for name in ("one knot", "thrice", "no coefficient")}
-    module = compiled(language, tmp_path, scene(one), INPUTS, tables="arguments")
-    good = columns(one, cases(100, 1_000, 10_000))
-    compare(module([*good.values()], {"F_Y": one.arrays()}), good, one)
-    for name, table in wrong.items():
-        found = module([*given.values()], {"F_Y": table})
-        assert set(found["status"]) == {4.0}, name
-        for lost in ("T_in", "T_in_wrt_theta", "N_C"):
-            assert np.isnan(found[lost]).all(), (name, lost)
-        np.testing.assert_allclose(found["Y"], known["Y"], rtol=1e-12)
+@pytest.mark.parametrize(("language", "kind"), tried())
+def test_every_language_has_the_values_of_evaluate(language, kind, tmp_path):
+    one = load(kind, SHAPES[len(kind) % 3])
+    given = columns(one, cases(100, 2_000, 10_000))
+    compare(compiled(language, tmp_path, scene(one), INPUTS)([*given.values()]), given, one)
 
 
 @pytest.mark.sampled
 @pytest.mark.parametrize("kind", ["theta", pytest.param("outer both ways", marks=pytest.mark.thorough)])
 def test_c_has_the_digits_of_its_program_in_python(kind, tmp_path):
-    """Frozen or given: every operation is rounded as plain Python rounds it, and in the same order."""
+    """Every operation is rounded as plain Python rounds it, and in the same order."""
     one = load(kind, "smooth")
     given = columns(one, cases(100, 1_000))
     rows = [*given.values()]
     frozen = compiled("c", tmp_path, scene(one), INPUTS)(rows)
-    opened = compiled("c", tmp_path / "open", scene(one), INPUTS, tables="arguments")(
-        rows, {"F_Y": one.arrays()}
-    )
-    module = module_of(dx.scene(scene(one)), Order("c", "press", "", form=Form()))
+    module = module_of(dx.scene(scene(one)), Order("c", "press", ""))
     own = module.forms
     stable, plain, test = (
         compile_python(expand_trigonometry(p, constants())) for p in (own.stable, own.plain, own.test)
@@ -116,7 +73,6 @@ def test_c_has_the_digits_of_its_program_in_python(kind, tmp_path):
         chosen, inputs = (plain, own.plain.inputs) if wide else (stable, own.stable.inputs)
         wanted = [float(x) for x in chosen(*(row[n] for n in inputs), *arrays)[: len(NAMES)]]
         np.testing.assert_array_equal([frozen[name][number] for name in NAMES], wanted)
-        np.testing.assert_array_equal([opened[name][number] for name in NAMES], wanted)
 
 
 @pytest.mark.sampled
@@ -127,8 +83,7 @@ def test_a_table_over_theta_has_the_digits_of_the_kernels(tmp_path):
         one = load("theta", "smooth")
         given = columns(one, cases(2_000, 10_000))
         written = scene(one, outputs=["push", "push_wrt_theta", "T_in"])
-        module = compiled("c", tmp_path, written, INPUTS, tables="arguments")
-        found = module([*given.values()], {"F_Y": one.arrays()})
+        found = compiled("c", tmp_path, written, INPUTS)([*given.values()])
         right = dx.evaluate(["push", "push_wrt_theta"], **given, **FIXED, F_Y=one)
         good = (np.abs(given["theta"]) < 9.0) & np.isfinite(given["ec"])  # whole periods are exact
         for name in right:
@@ -155,24 +110,22 @@ def test_jax_has_total_derivatives(tmp_path):
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("form", FORMS[: cases(1, 1, 2)])
-def test_numba_has_points_functions_and_a_reduced_grid(form, tmp_path):
+def test_numba_has_points_functions_and_a_reduced_grid(tmp_path):
     one, names = load("outer both ways", "jumping"), ["T_in"]
     written = scene(one, reduce={"theta": "absmax"}, outputs=names)
-    module = imported(dx.compile(written, tmp_path / "press_kernels.py", **options(form)))
-    tables = [*map(np.array, one.arrays())] if form == "arguments" else []
+    module = imported(dx.compile(written, tmp_path / "press_kernels.py"))
     given = [*columns(one, 60).values()]
-    found = module.evaluate(*given, *tables)
+    found = module.evaluate(*given)
     for k in range(44, 60):
         point = [float(column[k]) for column in given]
-        own = module.T_in(*point, *tables)
+        own = module.T_in(*point)
         assert own == pytest.approx(found["T_in"][k], rel=1e-11, abs=1e-11, nan_ok=True)
-        np.testing.assert_allclose(module.point(*point, *tables)[0], found["T_in"][k], rtol=1e-11, atol=1e-11)
+        np.testing.assert_allclose(module.point(*point)[0], found["T_in"][k], rtol=1e-11, atol=1e-11)
     axes = np.ix_([0.0, 0.01], [0.03, 0.04], [1.0, 2.0], [0.0, 1.0, 2.0])
     grid = dx.evaluate(
         "T_in", **dict(zip(("ec", "AB", "omega0", "theta"), axes, strict=True)), **FIXED, F_Y=one
     )
-    own = module.run(*tables)
+    own = module.run()
     np.testing.assert_allclose(own["T_in_absmax"], np.abs(grid).max(axis=-1), rtol=1e-11, atol=1e-11)
     np.testing.assert_array_equal(own["T_in_absmax_theta"], np.abs(grid).argmax(axis=-1))
 
@@ -181,7 +134,7 @@ def test_extended_is_in_c_too(tmp_path):
     one, names = load("outer both ways", "jumping"), ["T_in", "T_in_wrt_AB"]
     rows = [np.linspace(-6.0, 6.0, 9), np.linspace(-0.01, 0.01, 9), np.full(9, 0.04), np.full(9, 3.0)]
     written = scene(one, accuracy="extended", outputs=names)
-    found = compiled("c", tmp_path, written, INPUTS, tables="arguments")(rows, {"F_Y": one.arrays()})
+    found = compiled("c", tmp_path, written, INPUTS)(rows)
     for k, point in enumerate(zip(*rows, strict=True)):
         here = {n: float(x) for n, x in zip(INPUTS, point, strict=True)}
         right = dx.evaluate(names, **here, **FIXED, F_Y=one, accuracy="extended")
@@ -189,27 +142,19 @@ def test_extended_is_in_c_too(tmp_path):
 
 
 def test_what_a_module_cannot_hold_is_refused_by_name(tmp_path):
-    one = load("theta", "smooth")
     with pytest.raises(SceneError, match=r"loads.F_Y = .*a compiled module holds tables"):
         dx.compile(scene(dx.over_theta(np.sin, np.cos)), tmp_path / "press", to="c")
-    with pytest.raises(ValueError, match=f"is for {', '.join(OPEN[:-1])} and {OPEN[-1]}: in jax"):
-        dx.compile(scene(one), tmp_path / "press_jax.py", to="jax", tables="arguments")
-    with pytest.raises(ValueError, match="the tables of an FMU are frozen"):
-        dx.compile(scene(one), tmp_path / "press.fmu", to="fmu", tables="arguments")
-    with pytest.raises(ValueError, match="tables = 'given': it is one of frozen, arguments"):
-        dx.compile(scene(one), tmp_path / "press", to="c", tables="given")
-    with pytest.raises(SceneError, match="no load of the scene is a table"):
-        dx.compile(scene(-3.0), tmp_path / "press", to="c", tables="arguments")
     with pytest.raises(TypeError, match="is no table"):
         dx.over_theta(np.sin, np.cos).arrays()
 
 
-@pytest.mark.parametrize("form", FORMS)
-def test_a_scene_without_open_inputs(form, tmp_path):
+def test_a_scene_without_open_inputs(tmp_path):
     """A load over the stroke gives it a status of its own, which was folded to a number that is none."""
     one, point = load("outer both ways", "kinked"), {"theta": 1.0, "omega0": 2.0}
     lengths = {"ec": 0.01, "AB": 0.04, "BC": 0.064}
     written = {"outputs": ["T_in"], "mechanism": lengths, "motion": point, "loads": {"F_Y": one}}
-    module = imported(dx.compile(written, tmp_path / "press_fixed.py", **options(form)))
-    found = module.run(*(map(np.array, one.arrays()) if form == "arguments" else ()))
-    assert found == {"T_in": pytest.approx(dx.evaluate("T_in", **lengths, **point, F_Y=one)), "status": 0}
+    module = imported(dx.compile(written, tmp_path / "press_fixed.py"))
+    assert module.run() == {
+        "T_in": pytest.approx(dx.evaluate("T_in", **lengths, **point, F_Y=one)),
+        "status": 0,
+    }

@@ -89,10 +89,8 @@ def test_every_option_of_compile_is_one_of_the_machine(tmp_path):
     for name in options.keys() - {"scene"}:
         assert own[name] == options[name].replace(annotation=own[name].annotation)
     press = PRESS.replace(F_Y=dx.over_stroke([0, 0.01], [-400, 0], dead_centre="outer"))
-    press.compile(tmp_path / "press.py", "T_in", theta=[0.0, 1.0], tables="arguments")
-    dx.compile(press.scene("T_in", theta=[0.0, 1.0]), tmp_path / "press.py", tables="arguments", check=True)
-    with pytest.raises(ValueError, match="tables = 1: it is one of frozen, arguments"):
-        press.compile(tmp_path / "press.py", "T_in", tables=1)
+    press.compile(tmp_path / "press.py", "T_in", theta=[0.0, 1.0])
+    dx.compile(press.scene("T_in", theta=[0.0, 1.0]), tmp_path / "press.py", check=True)
 
 
 @pytest.mark.thorough

@@ -5,17 +5,12 @@ from .load import Load, OverY, TableOverTheta
 from .resolve import LoadPlan
 
 
-def line_of(name: str, load: Load, is_open: bool = False) -> LoadLines:
-    """The place at which the table of a load is looked up; a function of theta stays an input.
-
-    Where the table is open, inputs say where its period begins, and whether it is one.
-    """
-    valid = f"{name}_valid" if is_open else ""
+def line_of(name: str, load: Load) -> LoadLines:
+    """The place at which the table of a load is looked up; a function of theta stays an input."""
     if isinstance(load, TableOverTheta):
-        first = f"{name}_first" if is_open else load.table.knots[0]
-        return LoadLines(name, "theta", load.period, first, valid=valid)
+        return LoadLines(name, "theta", load.period, load.table.knots[0])
     if isinstance(load, OverY):
-        return LoadLines(name, load.centre or "Y", ways=load.inward is not None, valid=valid)
+        return LoadLines(name, load.centre or "Y", ways=load.inward is not None)
     return LoadLines(name, "")
 
 

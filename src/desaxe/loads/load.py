@@ -59,7 +59,7 @@ class Load(ABC):
         """The definition of the load as a text."""
 
     def arrays(self) -> Arrays:
-        """The arrays of a table, as modules that `compile(..., tables="arguments")` wrote take them."""
+        """The knots and coefficients of a table, as a written module holds them."""
         raise TypeError(f"{self!r} is no table")
 
     tables: tuple[Table, ...] = ()  # one, or one for each way of the slider; none of a function
@@ -141,7 +141,7 @@ class TableOverTheta(OverTheta):
         return self.table.period or TURN
 
     def arrays(self) -> Arrays:
-        """The arrays of the table, as modules that `compile(..., tables="arguments")` wrote take them."""
+        """The knots and coefficients of the table."""
         return arrays_of(self.table)
 
     @property
@@ -206,7 +206,7 @@ class OverY(Load):
         return ("Y", self.centre) if self.centre else ("Y",)
 
     def arrays(self) -> Arrays:
-        """The arrays of the tables, those inward last, as modules take them (`tables="arguments"`)."""
+        """The knots and coefficients of the tables, those inward last."""
         return arrays_of(self.outward, self.outward if self.inward is None else self.inward)
 
     @property

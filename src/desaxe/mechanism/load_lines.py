@@ -27,7 +27,6 @@ class LoadLines(NamedTuple):
     period  of a table over theta: a number, 0 without one, or the name of an input
     first   the first knot of such a table
     ways    whether another table holds for the way inward
-    valid   the name of an input that is a number where the table is one; "" where that is known
     """
 
     force: str
@@ -35,7 +34,6 @@ class LoadLines(NamedTuple):
     period: float | str = 0.0
     first: float | str = 0.0
     ways: bool = True
-    valid: str = ""
 
 
 class Total(NamedTuple):
@@ -130,15 +128,8 @@ class _Writer:
         value = self.new(f"{force}_found", "lookup", x, table, piece)
         size = self.new(f"{force}_size", "abs", value)
         finite = self.new(f"{force}_is_finite", "le", size, float_info.max, type="bool")
-        # A point without motion has a status of its own.
-        held = self.new(f"{force}_held", "select", finite, value, 0.0) if load.valid else ""
         slope = self.new(f"{force}_slope", "lookup_slope", x, table, piece) if parameters else ""
-        if load.valid:
-            valid = self.new(f"{force}_is_valid", "eq", load.valid, load.valid, type="bool")
-            self.new(force, "select", valid, held, nan)
-            slope = self.new(f"{force}_rises", "select", valid, slope, nan) if slope else ""
-        else:
-            self.new(force, "select", finite, value, 0.0)
+        self.new(force, "select", finite, value, 0.0)  # a point without motion has a status of its own
         self.notes[force] = Note(INPUTS[force].unit, INPUTS[force].meaning)
         for p in sorted(parameters):
             if load.over == "theta":

@@ -13,17 +13,16 @@ export function evaluate(inputs) {
     if (!isArray(inputs[name])) number(name, inputs[name]);
   }
   const given = INPUTS.map((name) => inputs[name]);
-  const tables = TABLES;
   const lengths = given.filter(isArray).map((value) => value.length);
   if (!lengths.length) {
-    const found = values(...given, ...tables);
+    const found = values(...given);
     return Object.fromEntries(OUTPUTS.map((name, place) => [name, found[place]]));
   }
   if (lengths.some((length) => length !== lengths[0])) throw new RangeError("arrays must have one length");
   const arrays = OUTPUTS.map(() => new Float64Array(lengths[0]));
   for (let k = 0; k < lengths[0]; k++) {
     const point = given.map((value, place) => (isArray(value) ? number(INPUTS[place], value[k]) : value));
-    values(...point, ...tables).forEach((one, place) => {
+    values(...point).forEach((one, place) => {
       arrays[place][k] = one;
     });
   }

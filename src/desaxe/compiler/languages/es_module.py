@@ -5,11 +5,9 @@ from ..text import with_short_temporaries
 from .javascript import HEADER, TABLES, emit_javascript
 from .protocol import Language, Module, Symbol
 from .shared import arrays_of, numbers, one_line, safe_name, with_safe_names
-from .tables import columns_of, described, numbers_of, period_of
 from .words import words_of
 
 WORDS = words_of("javascript").lines
-CHECKED = file_text(__package__, "es_module_tables.js")
 EVALUATE = file_text(__package__, "es_module.js")
 
 
@@ -19,7 +17,6 @@ class JavaScript(Language):
     name = "javascript"
     suffix = ".js"
     about = "an ES module and its types"
-    open_tables = True
 
     def files(self, module: Module) -> dict[str, str]:
         """`name.js` and `name.d.ts`."""
@@ -28,20 +25,17 @@ class JavaScript(Language):
 
 def _source(module: Module) -> str:
     program = module.forms.stable
-    given = numbers_of(module.open_tables)
-    program = program._replace(inputs=(*(symbol.name for symbol in module.inputs), *given))
+    program = program._replace(inputs=tuple(symbol.name for symbol in module.inputs))
     # An output may be an input, or stand twice: it is returned as it is called here.
     program = with_safe_names(with_short_temporaries(program), WORDS)
-    inputs = (*program.inputs, *columns_of(module.open_tables))
-    program = program._replace(inputs=inputs, outputs=program.outputs[: len(module.outputs)])
+    program = program._replace(outputs=program.outputs[: len(module.outputs)])
     units = ", ".join(f'{s.name}: "{s.unit}"' for s in _once((*module.inputs, *module.outputs)))
     functions = [_function(module, symbol, place) for place, symbol in enumerate(module.outputs)]
     return "\n".join(
         [
             _comment(module),
             HEADER,
-            *([TABLES] if module.tables or module.open_tables else []),
-            *([CHECKED] if module.open_tables else []),
+            *([TABLES] if module.tables else []),
             *_content(module),
             f"export const INPUTS = {_list(module.inputs)};",
             f"export const OUTPUTS = {_list(module.outputs)};",
@@ -49,7 +43,7 @@ def _source(module: Module) -> str:
             "",
             emit_javascript(program, "values"),
             *functions,
-            _evaluate(module),
+            EVALUATE,
         ]
     )
 
@@ -62,28 +56,12 @@ def _content(module: Module) -> list[str]:
     return found
 
 
-def _checked(module: Module, ahead: str = "") -> list[str]:
-    """The arguments of `values` that are made of the open tables."""
-    found = [
-        f"checkedTable({ahead}{n}_x, {ahead}{n}_c, {table.ways}, {period_of(table, 'Infinity')})"
-        for n, table in module.open_tables.items()
-    ]
-    return [f"...valuesOf([{', '.join(found)}])"] if found else []
-
-
-def _evaluate(module: Module) -> str:
-    given = ", ".join(_checked(module, "inputs."))
-    text = EVALUATE.replace("TABLES", f"[{given}]")
-    return text if given else text.replace("  const tables = [];\n", "").replace(", ...tables", "")
-
-
 def _function(module: Module, symbol: Symbol, place: int) -> str:
     """The function of one output; an argument that it does not take is NaN."""
     taken = module.taken(symbol.name)
-    given = ", ".join([*(safe_name(name, WORDS) for name in taken), *columns_of(module.open_tables)])
+    given = ", ".join(safe_name(name, WORDS) for name in taken)
     names = [one.name for one in module.inputs]
     checked = [f'number("{n}", {safe_name(n, WORDS)})' if n in taken else "NaN" for n in names]
-    checked += _checked(module)
     head = f"/** {_about(symbol)} */\nexport function {symbol.name}({given}) {{"
     return f"{head}\n  return values({', '.join(checked)})[{place}];\n}}\n"
 
@@ -92,17 +70,16 @@ def _types(module: Module) -> str:
     functions = []
     for symbol in module.outputs:
         taken = [f"{safe_name(name, WORDS)}: number" for name in module.taken(symbol.name)]
-        given = ", ".join([*taken, *(f"{name}: Column" for name in columns_of(module.open_tables))])
-        functions.append(f"/** {_about(symbol)} */\nexport function {symbol.name}({given}): number;")
+        functions.append(
+            f"/** {_about(symbol)} */\nexport function {symbol.name}({', '.join(taken)}): number;"
+        )
     return "\n".join(
         [
             _comment(module),
-            "type Column = readonly number[] | Float64Array;",
-            "type Values = number | Column;",
+            "type Values = number | readonly number[] | Float64Array;",
             "",
             "export interface Inputs<T = Values> {",
             *(f"  /** {_about(symbol)} */\n  {symbol.name}: T;" for symbol in module.inputs),
-            *(f"  {name}: Column;" for name in columns_of(module.open_tables)),
             "}",
             "",
             "export interface Outputs<T> {",
@@ -139,5 +116,4 @@ def _list(symbols: tuple[Symbol, ...]) -> str:
 
 
 def _comment(module: Module) -> str:
-    lines = [*module.head, *described(module.open_tables)]
-    return "\n".join(["/*", *(f" * {one_line(line)}".rstrip() for line in lines), " */"])
+    return "\n".join(["/*", *(f" * {one_line(line)}".rstrip() for line in module.head), " */"])

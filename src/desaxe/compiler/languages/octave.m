@@ -6,21 +6,6 @@ function x = numbers(name, x)
   x = double(x);
 end
 
-function [valid, first, x, c] = checked_table(x, c, ways, period)
-  % 0, or NaN where something is no table, and then zeros in its place; the first knot.
-  x = reshape(numbers('knots', x), 1, []);
-  c = reshape(numbers('coefficients', c), 1, []);
-  valid = 0;
-  n = numel(x);
-  if n < 2 || numel(c) < 4 * ways * (n + 1) || ~all(isfinite(x)) || ~all(isfinite(c)) ...
-      || any(diff(x) < 0) || ~all(x(1:end - 2) < x(3:end)) || x(end) - x(1) >= period
-    valid = NaN;
-    x = [0, 1];
-    c = zeros(1, 24);
-  end
-  first = x(1);
-end
-
 function x = select(c, a, b)
   % a where c holds, else b.
   whole = ones(size(c)) .* ones(size(a)) .* ones(size(b));

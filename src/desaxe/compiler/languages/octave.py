@@ -18,7 +18,6 @@ from .shared import (
     with_helpers,
     with_safe_names,
 )
-from .tables import columns_of, described, period_of
 from .words import words_of
 
 WORDS = {"nan": "NaN", "inf": "Inf", "True": "true", "False": "false"}
@@ -32,7 +31,6 @@ class Octave(Language):
     name = "octave"
     suffix = ".m"
     about = "name.m, for GNU Octave and MATLAB"
-    open_tables = True
 
     def files(self, module: Module) -> dict[str, str]:
         """`name.m`."""
@@ -41,12 +39,11 @@ class Octave(Language):
 
 def _text(module: Module) -> str:
     inputs = [safe_name(symbol.name, RESERVED) for symbol in module.inputs]
-    given = [*inputs, *columns_of(module.open_tables)]
     program = with_short_temporaries(module.forms.stable)
     program = program._replace(outputs=program.outputs[: len(module.outputs)])
     outputs = [symbol.name for symbol in module.outputs]
-    head = f"function [{', '.join(f'out_{name}' for name in outputs)}] = {module.name}({', '.join(given)})"
-    rows = [*_help(module), *_same_shape(inputs), *_content(module), *_checked(module), *_body(program)]
+    head = f"function [{', '.join(f'out_{name}' for name in outputs)}] = {module.name}({', '.join(inputs)})"
+    rows = [*_help(module), *_same_shape(inputs), *_content(module), *_body(program)]
     body = [f"  {row}" for row in [*rows, *_results(program, outputs)]]
     main = "\n".join([head, *body, "end", ""])
     return "\n".join([main, *with_helpers(main, HELPERS)])
@@ -55,12 +52,11 @@ def _text(module: Module) -> str:
 def _help(module: Module) -> list[str]:
     """The text that `help name` prints."""
     names = ", ".join(symbol.name for symbol in module.outputs)
-    given = ", ".join([*(symbol.name for symbol in module.inputs), *columns_of(module.open_tables)])
+    given = ", ".join(symbol.name for symbol in module.inputs)
     rows = [f"{module.name.upper()}  [{names}] = {module.name}({given})", "", *map(one_line, module.head), ""]
     for symbol in (*module.inputs, *module.outputs):
         source = f" ({symbol.source})" if symbol.source else ""
         rows.append(f"  {symbol.name} [{symbol.unit}]: {one_line(symbol.meaning)}{source}")
-    rows += described(module.open_tables, 1)
     rows += [
         "",
         "Numbers or arrays, which broadcast; what has no value is NaN.",
@@ -75,15 +71,6 @@ def _content(module: Module) -> list[str]:
     for name, column in arrays_of(module.tables).items():
         rows += [f"{name} = [ ...", *(f"  {row} ..." for row in numbers(column)), "];"]
     return rows
-
-
-def _checked(module: Module) -> list[str]:
-    """The tables that are arguments, and what Programs take of them."""
-    return [
-        f"[{n}_valid, {n}_first, {n}_x, {n}_c] = "
-        f"checked_table({n}_x, {n}_c, {table.ways}, {period_of(table, 'Inf')});"
-        for n, table in module.open_tables.items()
-    ]
 
 
 def _same_shape(inputs: list[str]) -> list[str]:

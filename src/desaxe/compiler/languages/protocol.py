@@ -6,7 +6,6 @@ constants. It knows no mechanism. A language turns it into the texts of one or m
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from math import inf
 from typing import NamedTuple
 
 from ..kernel import Kernel
@@ -49,24 +48,6 @@ class Solver(NamedTuple):
     slopes: Program | None = None
 
 
-class OpenTable(NamedTuple):
-    """A table that is an argument: `<name>_x` and `<name>_c`, its knots and the coefficients of its pieces.
-
-    Programs take two numbers that are made of it, as inputs: `<name>_valid`, NaN where it is none, and
-    `<name>_first`, its first knot.
-
-    symbol  the input that it stands for
-    over    what its knots are, with their unit
-    period  after which it repeats
-    ways    the number of tables in its coefficients, one behind the other
-    """
-
-    symbol: Symbol
-    over: str
-    period: float = inf
-    ways: int = 1
-
-
 class Module(NamedTuple):
     """The content of a module, independent of the language.
 
@@ -82,7 +63,6 @@ class Module(NamedTuple):
                  arguments, and the sign of the speed, which only friction takes
     constants    of the written-out sine and cosine; beyond their limit they are wrong
     tables       name -> knots and coefficients of a table that Programs look into
-    open_tables  name -> such a table whose content is an argument, for languages that take it
     """
 
     name: str
@@ -97,7 +77,6 @@ class Module(NamedTuple):
     arguments: Mapping[str, Sequence[str]] = {}
     motion: Solver | None = None
     tables: Mapping[str, Content] = {}
-    open_tables: Mapping[str, OpenTable] = {}
 
     def taken(self, name: str) -> list[str]:
         """The arguments of a result's own function, in order."""
@@ -112,7 +91,6 @@ class Language(ABC):
     suffix: str  # of the file that is called
     about: str  # what is written, for `desaxe compile --help`
     second_order = False  # whether `derivatives` and `values` are wanted
-    open_tables = False  # whether tables can be arguments
     extended = True  # whether sums and products are rounded as they stand, which twice the digits want
     loops: Callable[[Kernel, str], str] | None = None  # writes a loop nest as a module
 

@@ -56,8 +56,8 @@ _JAVASCRIPT = frozenset((
     "Array", "ArrayBuffer", "Float64Array", "Infinity", "Math", "NaN", "Object", "RangeError", "TypeError",
     "undefined",
     # defined
-    "False", "INPUTS", "OUTPUTS", "True", "UNITS", "checkedTable", "evaluate", "inf", "lookup",
-    "lookup_piece", "lookup_slope", "nan", "number", "values", "valuesOf",
+    "False", "INPUTS", "OUTPUTS", "True", "UNITS", "evaluate", "inf", "lookup", "lookup_piece",
+    "lookup_slope", "nan", "number", "values",
 ))  # fmt: skip
 
 _OCTAVE = frozenset((
@@ -73,7 +73,7 @@ _OCTAVE = frozenset((
     "false", "fix", "floor", "hypot", "isfinite", "islogical", "isnumeric", "isreal", "log", "max",
     "min", "mod", "numel", "ones", "reshape", "sin", "size", "sqrt", "true", "zeros",
     # defined
-    "checked_table", "copysign", "extended_only", "logarithm", "looked_up", "looked_up_slope", "lookup_piece",
+    "copysign", "extended_only", "logarithm", "looked_up", "looked_up_slope", "lookup_piece",
     "mul_add", "numbers", "power_of", "root", "rotated_cos", "rotated_sin", "rounding", "row_of",
     "select", "shape", "two_product_error", "two_sum_error",
 ))  # fmt: skip

@@ -6,14 +6,12 @@ from pathlib import Path
 from ...support.shown import printable
 from ..scene import scene as scene_of
 from .compile import generated, lost_of
-from .portable import Form
 
 
 def run_compile(
     source: str,
     place: str,
     to: str,
-    form: Form,
     check: bool,
     overwrite: bool,
     fmi: int,
@@ -23,7 +21,7 @@ def run_compile(
     if to != "fmu" and (fmi, drive) != (3, "torque"):
         raise ValueError("--fmi and --input are for --to fmu")
     scene = scene_of(source)
-    made = generated(scene, Path(place), to, form, fmi, drive)
+    made = generated(scene, Path(place), to, fmi, drive)
     if check:
         lines = [*map(printable, made.diff())]
         print(*lines, *([] if lines else [f"{printable(place)}: fresh"]), sep="\n")

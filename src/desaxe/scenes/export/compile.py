@@ -15,7 +15,7 @@ from ...mechanism.own import using
 from ...support.checks import yes_or_no
 from ...support.files import as_path
 from ...support.generated import Generated
-from ...support.shown import printable, shown
+from ...support.shown import printable
 from ...support.written import sealed
 from ..content import Content
 from ..scene import Scene
@@ -24,9 +24,7 @@ from ..schema import SceneError
 from .fmu.write import fmu_of
 from .numba_module import text_of
 from .peaks import left_out_of_module
-from .portable import PLAIN, Form, Order, left_out, module_of
-
-TABLES = 'tables="arguments" (--tables arguments)'
+from .portable import Order, left_out, module_of
 
 
 @with_known_keywords
@@ -39,7 +37,6 @@ def compile(
     overwrite: bool = False,
     fmi: int = 3,
     input: str = "torque",
-    tables: str = "frozen",
 ) -> Path:
     """Write the outputs of a scene as source code of its own, which needs nothing of desaxe.
 
@@ -60,10 +57,7 @@ def compile(
                 FMI 3.0, or with `fmi=2` 2.0. A torque moves the crank; `input="omega"`: its speed is given
 
     A path that ends as the language's files do is the file; any other is a folder, whose last part is the
-    name. The same scene gives the same bytes;
-    `tables="arguments"` makes the tables of loads arguments: knots and coefficients, `F_Y_x` and `F_Y_c`,
-    which `load.arrays()` has; what they are over, periods and whether the way inward has a table of its own
-    are the scene's (numba, c, octave, javascript).
+    name. The same scene gives the same bytes.
     `check=True` writes nothing and raises ValueError where the files are not what would be written. A file
     that it did not write, or that was edited since, is left as it is, and FileExistsError raised, unless
     `overwrite` is true.
@@ -78,8 +72,7 @@ def compile(
     """
     place = as_path("path", path)
     yes_or_no(check=check, overwrite=overwrite)
-    form = Form(are_open(tables))
-    made = generated(scene if isinstance(scene, Scene) else scene_of(scene), place, to, form, fmi, input)
+    made = generated(scene if isinstance(scene, Scene) else scene_of(scene), place, to, fmi, input)
     if not check:
         made.write(overwrite)
     elif stale := made.stale():
@@ -88,45 +81,30 @@ def compile(
     return place
 
 
-def are_open(tables: str) -> bool:
-    """True where tables are to be arguments; ValueError for a word that is neither of the two."""
-    if tables not in ("frozen", "arguments"):
-        raise ValueError(f"tables = {shown(tables)}: it is one of frozen, arguments")
-    return tables == "arguments"
-
-
 def those_with(has: str) -> str:
     """The languages that have something, listed."""
     names = (one.name for one in languages() if getattr(one, has))
     return " and ".join(", ".join(names).rsplit(", ", 1))
 
 
-def require_fmu(place: Path, form: Form) -> None:
-    """ValueError for the place of an FMU that is not NAME.fmu, and for an option that it does not have."""
+def require_fmu(place: Path) -> None:
+    """ValueError for the place of an FMU that is not NAME.fmu."""
     if place.suffix != ".fmu":
         raise ValueError(f"{printable(place)}: the file of an FMU is called NAME.fmu")
-    if form.open_tables:
-        raise ValueError(f"{TABLES} is for {those_with('open_tables')}: the tables of an FMU are frozen")
     require_name(place.stem, place, words_of("c").modules)
 
 
-def generated(
-    scene: Scene, place: Path, to: str = "numba", form: Form = PLAIN, fmi: int = 3, drive: str = "torque"
-) -> Generated:
+def generated(scene: Scene, place: Path, to: str = "numba", fmi: int = 3, drive: str = "torque") -> Generated:
     """The files of a scene in a language; nothing is written."""
     with using(scene.content.definitions):
         if to == "fmu":
-            require_fmu(place, form)
+            require_fmu(place)
             return fmu_of(scene, place, fmi, drive)
-        return _generated(scene, place, to, form)
+        return _generated(scene, place, to)
 
 
-def _generated(scene: Scene, place: Path, to: str, form: Form) -> Generated:
+def _generated(scene: Scene, place: Path, to: str) -> Generated:
     language = language_of(to, "fmu")
-    if form.open_tables and not language.open_tables:
-        raise ValueError(f"{TABLES} is for {those_with('open_tables')}: in {to} they are frozen")
-    if form.open_tables and not any(map(callable, scene.content.inputs.values())):
-        raise SceneError(f"{scene.name or 'scene'}: {TABLES}: no load of the scene is a table")
     if scene.content.accuracy == "extended" and not language.extended:
         raise SceneError(f'accuracy = "extended": {to} has standard, {those_with("extended")} have both')
     words = words_of(to)
@@ -135,14 +113,14 @@ def _generated(scene: Scene, place: Path, to: str, form: Form) -> Generated:
     name = place.stem if is_file else place.name
     if language.loops is not None:
         _require_importable(place, words.modules)
-        return Generated(place.parent, {place.name: sealed(text_of(scene, place.name, form))})
+        return Generated(place.parent, {place.name: sealed(text_of(scene, place.name))})
     require_name(name, place, words.modules)
     folder = place.parent if is_file else place
     source = Path(scene.name).name
-    said = f"desaxe compile {source} --to {to} -o {place.name}{form.options}"
+    said = f"desaxe compile {source} --to {to} -o {place.name}"
     if not source:
-        said = f'desaxe.compile(scene, "{place.name}", to="{to}"{form.keywords})'
-    module = module_of(scene, Order(to, name, said, language.second_order, form))
+        said = f'desaxe.compile(scene, "{place.name}", to="{to}")'
+    module = module_of(scene, Order(to, name, said, language.second_order))
     return Generated(folder, {file: sealed(text) for file, text in language.files(module).items()})
 
 

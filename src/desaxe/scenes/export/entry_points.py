@@ -4,16 +4,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from textwrap import wrap
 
 from ...compiler.languages.numba.reductions import KINDS, outputs_of
-from ...compiler.languages.protocol import OpenTable
-from ...compiler.languages.tables import columns_of, period_of
 from ...compiler.program import Program
 from ...compiler.text import with_short_temporaries, write_lines
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
 from ...support.template import filled
 from .axes import arguments_of, taken_from, text_file
-
-Tables = Mapping[str, OpenTable]
 
 AFFINITY = """try:
     from os import sched_getaffinity
@@ -22,20 +18,10 @@ except ImportError:  # not on this system
 """
 
 
-def taking(tables: Mapping[str, OpenTable]) -> list[str]:
-    """The lines that take the tables."""
-    return [
-        f"{n}_valid, {n}_first, {n}_x, {n}_c = "
-        f"taken_table({n}_x, {n}_c, {table.ways}, {period_of(table, 'inf')})"
-        for n, table in tables.items()
-    ]
-
-
-def call_of(inputs: Mapping[str, int | None], tables: Iterable[str]) -> list[str]:
+def call_of(inputs: Mapping[str, int | None]) -> list[str]:
     """The arguments of a kernel over axes, of which the first is cut into blocks."""
     own = {None: "{}", 0: 'axes["{}"][start:stop]'}
-    given = [own.get(axis, 'axes["{}"]').format(name) for name, axis in inputs.items()]
-    return [*given, *(f"{name}_{end}" for name in tables for end in "xc")]
+    return [own.get(axis, 'axes["{}"]').format(name) for name, axis in inputs.items()]
 
 
 def described(names: Iterable[str], state: bool) -> list[str]:
@@ -57,19 +43,16 @@ def docstring(first: str, lines: Sequence[str]) -> list[str]:
     return [f'"""{first}', *([""] if wrapped else []), *wrapped, '"""'] if wrapped else [f'"""{first}"""']
 
 
-def point_function(
-    program: Program, inputs: Sequence[str], shown: Sequence[str], state: bool, tables: Tables
-) -> str:
+def point_function(program: Program, inputs: Sequence[str], shown: Sequence[str], state: bool) -> str:
     """`point(...)` in plain math, with the helpers that it calls."""
     told = [*described(inputs, state), "", "Gives:", *described(shown, state)]
     types = ", ".join(f"type({name})" for name in inputs)
     check = [f"if str in ({types},):", f"    {_doubles(inputs)}  # says what is wrong"]
     return filled(
         text_file("point"),
-        GIVEN=", ".join([*inputs, *columns_of(tables)]),
+        GIVEN=", ".join(inputs),
         DOCSTRING=docstring("One point in plain Python, nothing compiled: numbers in, a tuple out.", told),
         CHECK=check if inputs else [],
-        TABLES=taking(tables),
         BODY=write_lines(with_short_temporaries(program), "python"),
         RETURNED=", ".join(program.outputs),
     )
@@ -79,10 +62,9 @@ def _doubles(inputs: Iterable[str]) -> str:
     return f"doubles({', '.join(f'{name}={name}' for name in inputs)})"
 
 
-def fixed_functions(columns: Sequence[str]) -> list[str]:
+def fixed_functions() -> list[str]:
     """`evaluate` and `run` where every input is fixed."""
-    given = ", ".join(columns)
-    return filled(text_file("fixed"), GIVEN=given).split("\n\n\n")
+    return text_file("fixed").split("\n\n\n")
 
 
 def evaluate_function(
@@ -91,10 +73,8 @@ def evaluate_function(
     state: bool,
     limit: float | None,
     kernel: Mapping[str, int | None],
-    tables: Tables,
 ) -> str:
     """`evaluate(...)`: numbers by `point`, arrays by the kernel, broadcast like NumPy."""
-    columns = columns_of(tables)
     told = [
         *described(inputs, state),
         "",
@@ -102,19 +82,18 @@ def evaluate_function(
         "no value is NaN" + (", and `status` tells why." if "status" in shown else "."),
         "`threads`: how many share the work, all cores without; the answer is the same.",
     ]
-    more = [*(name for name, axis in kernel.items() if axis is None), *columns]
+    more = [name for name, axis in kernel.items() if axis is None]
     check = ""
     if limit is not None and "theta" in inputs:
         theta = f"arrays[{inputs.index('theta')}]"
         check = filled(text_file("reach"), THETA=theta, LIMIT=repr(limit), ROUNDED=f"{limit:.0f}")
     return filled(
         text_file("evaluate"),
-        GIVEN=", ".join([*inputs, *columns]),
+        GIVEN=", ".join(inputs),
         DOCSTRING=docstring(f"{', '.join(shown)} at points of your own.", told),
         DOUBLES=_doubles(inputs),
         CHECK=check.splitlines(),
-        OF_POINT=", ".join(["*(float(a) for a in arrays)", *columns]),
-        TABLES=taking(tables),
+        OF_POINT="*(float(a) for a in arrays)",
         OF_KERNEL=", ".join(["*(a[start:stop] for a in flat)", *more, "*(a[start:stop] for a in places)"]),
     )
 
@@ -124,7 +103,6 @@ def run_function(
     axes: Sequence[str],
     inputs: Mapping[str, int | None],
     own_axes: Mapping[str, Sequence[str]],
-    tables: Tables,
 ) -> str:
     """`run()`: the outputs over the outer product of the scene's axes, or of others in their place.
 
@@ -139,11 +117,10 @@ def run_function(
     kernel = "point_kernel" if len(axes) == 1 else "grid_kernel"
     return filled(
         text_file("run"),
-        GIVEN=", ".join([*columns_of(tables), arguments_of(axes)]),
+        GIVEN=arguments_of(axes),
         DOCSTRING=docstring(f"{', '.join(names)} over the scene's axes.", told),
         CHOSEN=taken_from(axes),
-        TABLES=taking(tables),
-        KERNEL=f"{kernel}({', '.join([*call_of(inputs, tables), '*(a[start:stop] for a in out.values())'])})",
+        KERNEL=f"{kernel}({', '.join([*call_of(inputs), '*(a[start:stop] for a in out.values())'])})",
         LEFT=[
             f'out["{name}"] = fmax.reduce(out["{name}"], axis={places}, initial=nan)  # the same everywhere'
             for name, places in others.items()
@@ -158,7 +135,6 @@ def run_reduced_function(
     axes: Sequence[str],
     inputs: Mapping[str, int | None],
     own: Sequence[str],
-    tables: Tables,
 ) -> str:
     """`run()` of a scene with a reduction: the last axis is reduced, the grid is not stored."""
     last, rest, free = axes[-1], [axis for axis in axes[:-1] if axis], [axis for axis in axes if axis]
@@ -167,13 +143,12 @@ def run_reduced_function(
         + ", ".join(f"`_{kind}`, {KINDS[kind].replace('_', ' ')}" for kind in kinds)
         + f"; `_<extreme>_{last}`, where it is; `_skipped`, how many points along {last} have no value.",
     ]
-    given = [*call_of(inputs, tables), "length", "*(a[start:stop] for a in places)"]
+    given = [*call_of(inputs), "length", "*(a[start:stop] for a in places)"]
     return filled(
         text_file("run_reduced"),
-        GIVEN=", ".join([*columns_of(tables), arguments_of(free)]),
+        GIVEN=arguments_of(free),
         DOCSTRING=docstring(f"{', '.join(names)} over the scene's axes, {last} reduced.", told),
         CHOSEN=taken_from(free),
-        TABLES=taking(tables),
         REST=repr(tuple(rest)),
         LAST=last,
         PLACES=[f"empty(shape, {kind})," for _, kind in outputs_of(own, kinds)],

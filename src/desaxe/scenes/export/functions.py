@@ -19,7 +19,6 @@ from numpy import (
     int8,
     isfinite,
     where,
-    zeros,
 )  # fmt: skip
 
 
@@ -30,13 +29,6 @@ def doubles(**inputs):
         if numbers.dtype.kind in "US":
             raise TypeError(f"{name} = {inputs[name]!r}: expected numbers in SI units, not text")
     return [asarray(numbers, float64) for numbers in held.values()]
-
-
-def taken_table(x, c, ways, period):
-    """A table as the code takes it: two numbers, knots, coefficients; zeros where something is none."""
-    x, c = (ascontiguousarray(column).reshape(-1) for column in doubles(knots=x, coefficients=c))
-    valid, first = checked_table(x, c, ways, period)
-    return (valid, first, x, c) if valid == 0.0 else (valid, 0.0, arange(2.0), zeros(24))
 
 
 def in_blocks(block, length, points, threads):

@@ -1,12 +1,9 @@
-"""Loads as a compiled module holds them: their tables as text, or as arguments."""
+"""Loads as a compiled module holds them: their tables as text."""
 
 from collections.abc import Mapping
 
-from ...compiler.languages.protocol import OpenTable, Symbol
 from ...compiler.languages.shared import numbers
 from ...loads.load import Load, OverY, TableOverTheta
-from ...loads.table import Arrays
-from ...mechanism.inputs import INPUTS
 from ..schema import SceneError
 
 
@@ -21,28 +18,9 @@ def require_tables(where: str, loads: Mapping[str, Load]) -> None:
             )
 
 
-def tables_of(loads: Mapping[str, Load], opened: bool) -> tuple[dict[str, Arrays], dict[str, OpenTable]]:
-    """The tables of loads by name: frozen, or arguments."""
-    if opened:
-        return {}, {name: open_table(name, load) for name, load in loads.items()}
-    return {name: load.arrays() for name, load in loads.items()}, {}
-
-
-def open_table(name: str, load: Load) -> OpenTable:
-    """A load's table as an argument: what it is over, its period and its ways stay as they are."""
-    symbol = Symbol(name, INPUTS[name].unit, INPUTS[name].meaning)
-    if isinstance(load, TableOverTheta):
-        return OpenTable(symbol, f"theta [rad], with a period of {load.period!r}", load.period)
-    assert isinstance(load, OverY)
-    place = f"the distance from the {load.centre[2:]} dead centre" if load.centre else "Y"
-    if load.inward is None:
-        return OpenTable(symbol, f"{place} [m]")
-    return OpenTable(symbol, f"{place} [m]; the pieces of the way inward are behind those outward", ways=2)
-
-
-def table_text(name: str, load: Load, table: Arrays) -> str:
+def table_text(name: str, load: Load) -> str:
     """The arrays of a load's table as text: knots, and coefficients in the distance from one."""
     rows = []
-    for end, column in zip("xc", table, strict=True):
+    for end, column in zip("xc", load.arrays(), strict=True):
         rows += [f"{name}_{end} = array([", *(f"    {row}" for row in numbers(column)), "])"]
     return "\n".join([f"# {name}, a {load.told().strip('<>')}: knots, and the cubics between them.", *rows])

@@ -25,14 +25,9 @@ class Made(NamedTuple):
     content: Content
     asked: PortableRequest
 
-    @property
-    def given(self) -> tuple[str, ...]:
-        """The tables that are arguments."""
-        return tuple(self.asked.loads) if self.asked.open else ()
-
     def guarded(self, key: KernelKey, names: tuple[str, ...]) -> Program:
         """The program of names of a point, which says what of its inputs is bad, as array kernels do."""
-        asked = self.asked if names == self.asked.shown else asked_of(self.content, names, self.asked.open)
+        asked = self.asked if names == self.asked.shown else asked_of(self.content, names)
         return _guarded(asked.stable(key.accuracy), key)
 
     def kernel(self, key: KernelKey) -> Kernel:
@@ -40,17 +35,16 @@ class Made(NamedTuple):
         if not self.asked.loads:
             return kernel_of(key._replace(names=self.asked.request.names))
         stable, axes = self.asked.stable(key.accuracy), dict(key.axis_of)
-        valid = {f"{name}_valid" for name in self.asked.loads}
-        varying = [name for name in stable.inputs if name in axes or name in valid]
+        varying = [name for name in stable.inputs if name in axes]
         if key.accuracy == "extended":
             limits = Limits(LEAST, {"theta": limit_of(key)})
             pairs = guarded_pairs(stable, varying, limits, double_constants())
-            return nest(pairs, axes, key.axes)._replace(given=self.given)
+            return nest(pairs, axes, key.axes)
         turning = None if key.far else constants()
         whole = guarded_for_loops(stable, varying, Limits(LEAST), turning)
         plain = self.asked.program(key.accuracy, plain=True)
-        if plain is None or self.given:
-            return nest(whole, axes, key.axes)._replace(given=self.given)
+        if plain is None:
+            return nest(whole, axes, key.axes)
         test = specialise(("wide_margins",), self.asked.request.form, self.asked.fixed)
         own = [name for name in varying if name not in LENGTHS]  # the test implies valid lengths
         first = guarded_for_loops(plain, own, Limits(LEAST), turning, plain=True)

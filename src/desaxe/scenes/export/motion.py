@@ -51,7 +51,6 @@ def motion(
     given: Mapping[str, object],
     branch: int,
     loads: Mapping[str, Load] = MappingProxyType({}),
-    open_tables: bool = False,
 ) -> Program:
     """The acceleration and its status, from theta, omega, torque, what is not a number, and `way` (-1, 1).
 
@@ -64,7 +63,7 @@ def motion(
     rubs = numbers.get("mu") != 0.0
     fixed = {**numbers, "branch": float(branch), "alpha": 0.0, "mu": 0.0}
     names = (*SMOOTH, STATUS, *(CONTACT if rubs else ()))
-    base = _base(names, form_of(values), tuple(fixed.items()), loads, open_tables)
+    base = _base(names, form_of(values), tuple(fixed.items()), loads)
     law = read_function(RUBBING if rubs else FREE)
     parts = dict(zip((*SMOOTH, STATUS, *CONTACT), base.outputs, strict=False))
     law = renamed(law, parts | {line.name: f"_{line.name}" for line in law.lines})
@@ -87,7 +86,6 @@ def _base(
     form: Variant,
     fixed: tuple[tuple[str, float], ...],
     loads: Mapping[str, Load],
-    open_tables: bool,
 ) -> Program:
     """The program of names of the motion, under loads with `way`."""
     if not loads:
@@ -96,15 +94,13 @@ def _base(
     plan = plan_of(public, loads, True, public != names)
     every = tuple(dict.fromkeys((*names, *plan.names, *plan.motion)))
     base = specialise(every, form, fixed)
-    lines = [line_of(name, load, open_tables) for name, load in plan.loads.items()]
+    lines = [line_of(name, load) for name, load in plan.loads.items()]
     of_all = {total.name: total for total in totals_of(plan)}
     totals = [of_all.get(name, Total(name)) for name in names]
     return with_totals(base, dict(zip(every, base.outputs, strict=True)), lines, totals, TurningSense("way"))
 
 
-def motion_solver(
-    given: Mapping[str, object], branch: int, loads: Mapping[str, Load], open_tables: bool
-) -> Solver:
+def motion_solver(given: Mapping[str, object], branch: int, loads: Mapping[str, Load]) -> Solver:
     """The acceleration as a function of its own arguments and those of a module."""
     told = (
         ("N*m", "torque on the crank"),
@@ -113,5 +109,5 @@ def motion_solver(
         ("1", "sign of the speed"),
     )
     own = zip(("torque", "theta", "omega", "way"), told, strict=True)
-    law = motion(given, branch, loads, open_tables)
+    law = motion(given, branch, loads)
     return Solver(tuple(Symbol(name, *each) for name, each in own), law)

@@ -9,12 +9,11 @@ import numpy as np
 
 from ...compiler.builder import HELPERS, MATH, Parts, functions_of, module_text, renamed, with_sources
 from ...compiler.cost import cost_of
-from ...compiler.languages.numba.language import CHECKED, scalar_parts
+from ...compiler.languages.numba.language import scalar_parts
 from ...compiler.languages.numba.module import CALLABLE, loops_parts, numba_parts
 from ...compiler.languages.numba.reductions import reduced_parts
-from ...compiler.languages.protocol import OpenTable, Symbol
+from ...compiler.languages.protocol import Symbol
 from ...compiler.languages.shared import refuse_taken, taken_in_python
-from ...compiler.languages.tables import columns_of, described, numbers_of
 from ...compiler.operations import OPERATIONS
 from ...loads.resolve import split
 from ...mechanism.catalogue import of_design, quantity
@@ -35,34 +34,33 @@ from .entry_points import (
     run_function,
     run_reduced_function,
 )
-from .loaded import require_tables, table_text, tables_of
+from .loaded import require_tables, table_text
 from .made import Made, limit_of
 from .peaks import left_out_of_module, peak_texts
-from .portable import PLAIN, WITHOUT_VALUE, Form, PortableRequest, asked_of, require_outputs
+from .portable import WITHOUT_VALUE, PortableRequest, asked_of, require_outputs
 
 WIDTH = 96
 FUNCTIONS = Path(__file__).with_name("functions.py")
 
 
-def text_of(scene: Scene, name: str = "my_kernels.py", form: Form = PLAIN) -> str:
+def text_of(scene: Scene, name: str = "my_kernels.py") -> str:
     """The text of the module of a scene."""
     content = scene.content
     require_outputs(scene)
     require_tables(scene.name or "scene", split(content.inputs)[1])
     names = (*content.outputs, *([] if content.reduction else ["status"]))
-    asked = asked_of(content, names, form.open_tables)
+    asked = asked_of(content, names)
     shown, state = asked.shown, asked.request.form.state
-    frozen, opened = tables_of(asked.loads, form.open_tables)
     made, order = Made(content, asked), _order(content, shown)
     key = _key(content, asked, order)
     axes = {n: value for n in order if isinstance(value := content.inputs.get(n), tuple)}
     program = made.guarded(key, shown)
-    inputs = tuple(sorted(set(program.inputs) - set(numbers_of(opened)), key=ORDER.index))
+    inputs = tuple(sorted(program.inputs, key=ORDER.index))
     kernels = _kernels(made, key, inputs) if inputs else Kernels([], {}, (), {})
     peaks = peak_texts(content)
-    scalars = _scalars(made, key, shown, inputs, own_axes(content, shown), opened)
+    scalars = _scalars(made, key, shown, inputs, own_axes(content, shown))
     groups = [
-        with_sources([point_function(program, inputs, shown, state, opened)], (HELPERS, FUNCTIONS)),
+        with_sources([point_function(program, inputs, shown, state)], (HELPERS, FUNCTIONS)),
         *map(
             _compiled,
             [
@@ -72,28 +70,25 @@ def text_of(scene: Scene, name: str = "my_kernels.py", form: Form = PLAIN) -> st
             ],
         ),
     ]
-    compiles = bool(inputs or peaks.searches or opened)
+    compiles = bool(inputs or peaks.searches)
     limit = None if key.far else limit_of(key)
-    calls = [] if inputs else fixed_functions(columns_of(opened))
+    calls = [] if inputs else fixed_functions()
     if inputs:
-        calls.append(evaluate_function(inputs, shown, state, limit, kernels.of_points, opened))
+        calls.append(evaluate_function(inputs, shown, state, limit, kernels.of_points))
         calls += [axes_text(axes), chosen_text(axes, limit)] if axes else []
         calls.append(
-            run_function(shown, list(axes), kernels.inputs, own_axes(content, shown), opened)
+            run_function(shown, list(axes), kernels.inputs, own_axes(content, shown))
             if content.fused is None
-            else run_reduced_function(
-                shown, content.fused.kinds, order, kernels.inputs, kernels.outputs, opened
-            )
+            else run_reduced_function(shown, content.fused.kinds, order, kernels.inputs, kernels.outputs)
         )
     calls += peaks.functions
     tables = [AFFINITY, text_file("compiled")] if compiles else []
-    tables += [CHECKED] if opened else []
-    tables += [table_text(n, asked.loads[n], each) for n, each in frozen.items()]
+    tables += [table_text(n, load) for n, load in asked.loads.items()]
     tables += [f"INPUTS = {inputs!r}", _outputs(shown), _fixed(key)]
-    command = f"desaxe compile {Path(scene.name).name} -o {name}{form.options}"
+    command = f"desaxe compile {Path(scene.name).name} -o {name}"
     if not scene.name:
-        command = f'desaxe.compile(scene, "{name}"{form.keywords})'
-    head = _docstring(scene, command, key, shown, inputs, cost_of(program).operations, opened)
+        command = f'desaxe.compile(scene, "{name}")'
+    head = _docstring(scene, command, key, shown, inputs, cost_of(program).operations)
     text = module_text(head, _front(tables), *groups, _front(calls))
     refuse_taken(shown, taken_in_python(text) | {f"compiled_{name}" for name in functions_of(HELPERS)})
     return text
@@ -143,7 +138,6 @@ def _scalars(
     shown: tuple[str, ...],
     inputs: tuple[str, ...],
     own: Mapping[str, Sequence[str]],
-    opened: Mapping[str, OpenTable],
 ) -> Parts:
     """The functions of one output each; those of a whole design take its own inputs alone."""
     scalars = []
@@ -151,7 +145,7 @@ def _scalars(
         row = quantity(name, key.form.state)
         taken = [n for n in inputs if n in own.get(name, inputs)]
         scalars.append((Symbol(name, row.unit, row.meaning), made.guarded(key, (name,)), taken))
-    parts = numba_parts(scalar_parts(scalars, opened), jit=CALLABLE)
+    parts = numba_parts(scalar_parts(scalars), jit=CALLABLE)
     return parts._replace(imports={**parts.imports, "isfinite": "numpy"})
 
 
@@ -218,14 +212,13 @@ def _docstring(
     shown: tuple[str, ...],
     inputs: tuple[str, ...],
     operations: int,
-    opened: Mapping[str, OpenTable],
 ) -> str:
     """The module's docstring: its source, its contents, its units."""
     peak_lines = peak_texts(scene.content).lines
     state = key.form.state
     own = own_axes(scene.content, shown).get(shown[0])
     given = ["*INPUTS"] if own is None else [n for n in inputs if n in own]
-    first = f"{shown[0]}({', '.join([*given, *columns_of(opened)])})"
+    first = f"{shown[0]}({', '.join(given)})"
     lines = [
         f"{scene.title or 'An offset slider-crank'}: {', '.join(shown)}.",
         "",
@@ -247,7 +240,6 @@ def _docstring(
         *WITHOUT_VALUE,
         "",
     ]
-    lines += [*described(opened)[1:], ""] if opened else []
     lost = left_out_of_module(scene.content)
     lines += [f"Not in here (`desaxe run` has it): {', '.join(lost)}.", ""] if lost else []
     rows = [("inputs", n, INPUTS[n].unit, INPUTS[n].meaning) for n in inputs]

@@ -27,7 +27,7 @@ from ..content import Content
 from ..scene import Scene
 from ..schema import SceneError
 from .axes import own_axes
-from .loaded import require_tables, tables_of
+from .loaded import require_tables
 from .motion import has_masses, motion_solver
 from .solvers import solvers
 
@@ -43,25 +43,6 @@ WITHOUT_VALUE = (
 )
 
 
-class Form(NamedTuple):
-    """The option of a written module: tables as arguments."""
-
-    open_tables: bool = False
-
-    @property
-    def options(self) -> str:
-        """The options as the command line has them."""
-        return " --tables arguments" * self.open_tables
-
-    @property
-    def keywords(self) -> str:
-        """The options as `compile` has them."""
-        return ', tables="arguments"' * self.open_tables
-
-
-PLAIN = Form()
-
-
 class Order(NamedTuple):
     """A request for another language than Python."""
 
@@ -69,14 +50,12 @@ class Order(NamedTuple):
     name: str
     command: str
     second_order: bool = False
-    form: Form = PLAIN
 
 
 class PortableRequest(NamedTuple):
     """A request of a scene, its fixed inputs, and its loads that vary with the motion.
 
     shown   the names whose values are wanted; the request has what their totals are made of, too
-    open    whether the tables of the loads are not known yet
     """
 
     request: Request
@@ -85,7 +64,6 @@ class PortableRequest(NamedTuple):
     loads: Mapping[str, Load] = MappingProxyType({})
     totals: tuple[Total, ...] = ()
     way: TurningSense = TurningSense(1.0)
-    open: bool = False
 
     def stable(self, accuracy: str) -> Program:
         """The Program of the shown names that is right everywhere."""
@@ -100,7 +78,7 @@ class PortableRequest(NamedTuple):
         if program is None or not self.loads:
             return program
         names = dict(zip(own.shown, program.outputs, strict=True))
-        lines = [line_of(n, load, self.open) for n, load in self.loads.items()]
+        lines = [line_of(n, load) for n, load in self.loads.items()]
         return with_totals(program, names, lines, self.totals, self.way)
 
 
@@ -110,7 +88,7 @@ def module_of(scene: Scene, order: Order) -> Module:
     require_outputs(scene)
     loads = split(content.inputs)[1]
     require_tables(scene.name or "scene", loads)
-    asked = asked_of(content, (*content.outputs, "status"), order.form.open_tables)
+    asked = asked_of(content, (*content.outputs, "status"))
     fixed, state = asked.fixed, asked.request.form.state
     arguments = [n for n in ORDER if isinstance(content.inputs.get(n), tuple)]
     forms = _forms(asked)
@@ -122,10 +100,10 @@ def module_of(scene: Scene, order: Order) -> Module:
     given = content.inputs | {n: value for n, value in fixed if n in content.inputs}
     moves = None
     if has_masses(given):
-        moves = motion_solver(given, content.branch, loads, order.form.open_tables)
+        moves = motion_solver(given, content.branch, loads)
     used = {*asked.loads, *(tables_in(moves.solve) if moves else ())}
-    tables = tables_of({n: load for n, load in loads.items() if n in used}, order.form.open_tables)
-    told = (derivatives, values, solvers(dict(fixed)), own, moves, *tables)
+    tables = {n: load.arrays() for n, load in loads.items() if n in used}
+    told = (derivatives, values, solvers(dict(fixed)), own, moves, tables)
     return Module(order.name, head, inputs, outputs, forms, constants(), *told)
 
 
@@ -161,7 +139,7 @@ def _facts(content: Content, asked: PortableRequest) -> tuple[str, ...]:
     fixed = {n: value for n, value in asked.fixed if n in INPUTS}
     numbers = [f"{n} = {value!r} {INPUTS[n].unit}".removesuffix(" 1") for n, value in fixed.items()]
     tables = [f"{n}, a {load.told().strip('<>')}" for n, load in asked.loads.items()]
-    numbers += [] if asked.open else tables
+    numbers += tables
     branch = dict(asked.fixed)["branch"]
     motion = "A given state" if asked.request.form.state else "Constant alpha"
     lines = [
@@ -169,16 +147,13 @@ def _facts(content: Content, asked: PortableRequest) -> tuple[str, ...]:
         "Y points along the slider axis towards the slider,",
         f"theta turns from +Y towards +X. {motion}; branch {branch:+.0f}.",
     ]
-    if asked.open:
-        names = ", ".join(asked.loads)
-        lines.append(f"Tables are arguments: {names}. In desaxe load.arrays() has knots and coefficients.")
     lines += [f"Folded in: {', '.join(numbers)}."] if numbers else []
     lost = left_out(content)
     lines += [f"Not in here (`desaxe run` has it): {', '.join(lost)}."] if lost else []
     return ("", *lines, "", *WITHOUT_VALUE)
 
 
-def asked_of(content: Content, names: Iterable[str], open_tables: bool = False) -> PortableRequest:
+def asked_of(content: Content, names: Iterable[str]) -> PortableRequest:
     """The request of a scene for names; an absent input without effect is 0."""
     shown = tuple(dict.fromkeys(names))
     given, loads = split(content.inputs)
@@ -192,7 +167,7 @@ def asked_of(content: Content, names: Iterable[str], open_tables: bool = False) 
     if not plan.loads:
         return PortableRequest(asked, tuple(fixed.items()), shown)
     totals = totals_of(plan)
-    return PortableRequest(asked, tuple(fixed.items()), shown, plan.loads, totals, _way(given), open_tables)
+    return PortableRequest(asked, tuple(fixed.items()), shown, plan.loads, totals, _way(given))
 
 
 def _way(given: Mapping[str, Any]) -> TurningSense:

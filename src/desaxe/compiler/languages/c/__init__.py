@@ -3,7 +3,6 @@
 language   the two files
 functions  a Program as a static function, and the calls between them
 steps      the motion under a torque, step by step
-tables     tables that are arguments: parameters, checks, and a table from points
 helpers    what the spellings call: the .c files here
 motion/    the C of `steps`
 """

@@ -7,7 +7,7 @@ A Program takes the sine and cosine of an argument as arguments of their own: on
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from ...program import Program, renamed, tables_in
+from ...program import Program, renamed
 from ...text import with_short_temporaries
 from ..shared import one_line, safe_name, statements, types_of, with_safe_names
 from ..words import words_of
@@ -15,8 +15,6 @@ from ..words import words_of
 # NAN and INFINITY are floats: a cast says that they are meant as doubles.
 WORDS = {"nan": "(double)NAN", "inf": "(double)INFINITY", "True": "1", "False": "0"}
 RESERVED = words_of("c").lines
-TABLE = "const double *{0}_x, const double *{0}_c, int64_t {0}_n"  # one that is an argument
-PASSED = "{0}_x, {0}_c, {0}_n"
 
 
 class Lifted(NamedTuple):
@@ -63,21 +61,18 @@ def static_function(
     results: int,
     status: int | None,
     comment: str = "",
-    tables: Iterable[str] = (),
 ) -> str:
     """`int name(arguments, double out[])`, which fills the first outputs and returns that of index `status`.
 
-    Without a status nothing is returned. The arrays of tables that are arguments come last.
+    Without a status nothing is returned.
     """
     program = with_safe_names(program, RESERVED)
     arguments = [safe_name(argument, RESERVED) for argument in arguments]
     filled = program.outputs[:results]
     out = ["double out[]"] if filled else []
-    parameters = ", ".join([*(f"double {a}" for a in arguments), *out, *map(TABLE.format, tables)])
+    parameters = ", ".join([*(f"double {a}" for a in arguments), *out])
     used = {a for line in program.lines for a in line.args if isinstance(a, str)} | set(program.outputs)
     lines = [f"(void){a};" for a in arguments if a not in used]
-    found = tables_in(program)
-    lines += [f"(void){t}_{end};" for t in tables if t not in found for end in "xcn"]
     lines += _body(program)
     types = types_of(program)
     cast = {name: "(double)" * (types[name] != "f64") for name in filled}  # a status

@@ -8,11 +8,9 @@ from ...passes.value_numbering import value_numbering
 from ...program import Line, Program
 from ..protocol import Language, Module, Solver, Symbol
 from ..shared import arrays_of, called, numbers, one_line, with_helpers
-from ..tables import described, numbers_of
 from .functions import Lifted, lifted, static_function
 from .helpers import CPLUSPLUS, HELPERS, PRAGMAS
 from .steps import HEADER, step_texts
-from .tables import checks, parameters, passed, table_comment, table_function, table_signature
 
 STRIP = 128  # points of an array whose sines are computed ahead, on the stack
 
@@ -23,7 +21,6 @@ class C(Language):
     name = "c"
     suffix = ".c"
     about = "FOLDER/name.h and name.c, C99, named as the folder"
-    open_tables = True
 
     def files(self, module: Module) -> dict[str, str]:
         """`name.h` and `name.c`."""
@@ -39,24 +36,19 @@ def _header(module: Module) -> str:
     listed = [
         *_table("in", module.inputs),
         *_table("out", module.outputs),
-        *described(module.open_tables),
     ]
-    more = parameters(module.open_tables)
     functions = [
         "/* One point; returns its status. */",
-        f"int {name}_point(const double in[], double out[]{more});",
+        f"int {name}_point(const double in[], double out[]);",
         "",
         "/* n points: in[k] and out[k] are arrays. What is written shares no memory with anything else. */",
-        f"void {name}_array(size_t n, const double *const in[], double *const out[]{more});",
+        f"void {name}_array(size_t n, const double *const in[], double *const out[]);",
     ]
-    for table, one in module.open_tables.items():
-        functions += ["", *table_comment(table, one)]
-        functions.append(f"{table_signature(name, table, one)};")
     for solver, given in module.solvers.items():
         functions += ["", *SOLVER_TEXTS[solver].format(name=name).splitlines()]
         functions.append(f"{_signature(name, solver, given)};")
     if module.motion is not None:
-        functions += ["", *filled(HEADER, NAME=name, MORE=more).rstrip().splitlines()]
+        functions += ["", *filled(HEADER, NAME=name).rstrip().splitlines()]
     tables = [
         "/* Names and SI units, in order; NULL at the end. */",
         *(f"extern const char *const {name}_{table}[];" for table in _tables(module)),
@@ -68,7 +60,6 @@ def _header(module: Module) -> str:
             f"#define {guard}",
             "",
             "#include <stddef.h>",
-            *(["#include <stdint.h>"] if module.open_tables else []),
             "",
             "#ifdef __cplusplus",
             'extern "C" {',
@@ -166,12 +157,8 @@ class _Source:
     def text(self) -> str:
         """The text of the whole file."""
         name, motion = self.module.name, self.module.motion
-        opened = self.module.open_tables
-        steps = [] if motion is None else step_texts(name, motion, self.names, opened)
-        filled = [table_function(name, table, one) for table, one in opened.items()]
-        functions = "\n".join(
-            [*self._forms(), self._point(), self._array(), *self._solvers(), *steps, *filled]
-        )
+        steps = [] if motion is None else step_texts(name, motion, self.names)
+        functions = "\n".join([*self._forms(), self._point(), self._array(), *self._solvers(), *steps])
         tables = [
             f"const char *const {name}_{table}[] = {{{', '.join([*map(quoted, texts), 'NULL'])}}};"
             for table, texts in _tables(self.module).items()
@@ -181,7 +168,7 @@ class _Source:
                 comment(self.module.head),
                 f'#include "{name}.h"',
                 "#include <math.h>",
-                *(["#include <stdint.h>"] if self.module.tables or opened else []),
+                *(["#include <stdint.h>"] if self.module.tables else []),
                 "",
                 CPLUSPLUS,
                 PRAGMAS,
@@ -212,43 +199,38 @@ class _Source:
     def _forms(self) -> list[str]:
         stable = "the form for designs near a change point; right everywhere" if self.plain else ""
         given, count, status = self._arguments(), len(self.module.outputs), self.module.forms.status
-        tables = self.module.open_tables
-        found = [static_function("stable", self.stable.program, given, count, status, stable, tables)]
+        found = [static_function("stable", self.stable.program, given, count, status, stable)]
         if self.plain and self.test:
             plain = "the form for designs with wide margins, in which nothing cancels"
-            found.append(static_function("plain", self.plain.program, given, count, status, plain, tables))
+            found.append(static_function("plain", self.plain.program, given, count, status, plain))
             found.append(static_function("has_wide_margins", self.test, self.test.inputs, 0, 0))
         return found
 
     def _arguments(self) -> list[str]:
         pairs = [name for pair in self.turns.values() for name in pair]
-        return self.names + pairs + numbers_of(self.module.open_tables)
+        return self.names + pairs
 
     def _point(self) -> str:
         inputs = [f"in[{index}]" for index in range(len(self.names))]
         lines = ["(void)in;"] if not self.names else []
-        tables = self.module.open_tables
-        lines += checks(tables)
         pairs = []
         for angle in self.turns:
             lines += [f"double turn_{angle}[2];", f"sin_cos(in[{self.names.index(angle)}], turn_{angle});"]
             pairs += [f"turn_{angle}[0]", f"turn_{angle}[1]"]
         out = ["out"] if self.module.outputs else []
-        given = ", ".join([*inputs, *pairs, *numbers_of(tables), *out, *passed(tables)])
+        given = ", ".join([*inputs, *pairs, *out])
         if self.plain and self.test:
             test = ", ".join(f"in[{self.names.index(name)}]" for name in self.test.inputs)
             lines += [f"if (has_wide_margins({test})) {{", f"  return plain({given});", "}"]
         lines.append(f"return stable({given});")
-        head = f"int {self.module.name}_point(const double in[], double out[]{parameters(tables)}) {{"
+        head = f"int {self.module.name}_point(const double in[], double out[]) {{"
         return "\n".join([head, *(f"  {line}" for line in lines), "}"]) + "\n"
 
     def _array(self) -> str:
         """Strips of an array: sines ahead, then one loop in the form that the strip's designs share."""
-        name, tables = self.module.name, self.module.open_tables
-        more = parameters(tables)
-        rows = [f"void {name}_array(size_t n, const double *const in[], double *const out[]{more}) {{"]
+        name = self.module.name
+        rows = [f"void {name}_array(size_t n, const double *const in[], double *const out[]) {{"]
         rows += ["  (void)in;"] if not self.names else []
-        rows += [f"  {line}" for line in checks(tables)]
         rows += [
             f"  for (size_t start = 0; start < n; start += {STRIP}) {{",
             f"    const size_t count = n - start < {STRIP} ? n - start : {STRIP};",
@@ -261,8 +243,7 @@ class _Source:
         for number, angle in enumerate(self.turns):
             pairs += [f"sines_{number}[k]", f"cosines_{number}[k]"]
             rows += _turning(number, f"in_{self.names.index(angle)}", repr(self.module.constants.limit))
-        given = ", ".join([*(f"{s}[k]" for s in strips), *pairs, *numbers_of(tables)])
-        last = passed(tables)
+        given = ", ".join([*(f"{s}[k]" for s in strips), *pairs])
         if self.plain and self.test:
             test = ", ".join(f"in_{self.names.index(n)}[k]" for n in self.test.inputs)
             rows += [
@@ -271,15 +252,15 @@ class _Source:
                 f"      wide += (size_t)has_wide_margins({test});",
                 "    }",
                 "    if (wide == count) {",
-                *_loop("plain({})", given, results, 6, last),
+                *_loop("plain({})", given, results, 6),
                 "    } else if (wide == 0) {",
-                *_loop("stable({})", given, results, 6, last),
+                *_loop("stable({})", given, results, 6),
                 "    } else {",
-                *_loop(f"has_wide_margins({test}) ? plain({{}}) : stable({{}})", given, results, 6, last),
+                *_loop(f"has_wide_margins({test}) ? plain({{}}) : stable({{}})", given, results, 6),
                 "    }",
             ]
         else:
-            rows += _loop("stable({})", given, results, 4, last)
+            rows += _loop("stable({})", given, results, 4)
         return "\n".join([*rows, "  }", "}"]) + "\n"
 
     # -- further functions --
@@ -352,12 +333,12 @@ def _turning(number: int, strip: str, limit: str) -> list[str]:
     ]
 
 
-def _loop(call: str, given: str, results: list[str], indent: int, last: list[str]) -> list[str]:
+def _loop(call: str, given: str, results: list[str], indent: int) -> list[str]:
     """One loop over a strip: call a function and store its results."""
     pad = " " * indent
     values = [f"double value[{len(results)}];"] if results else []
     value = "value" if results else ""
-    whole = call.replace("{}", ", ".join([part for part in (given, value, *last) if part]))
+    whole = call.replace("{}", ", ".join([part for part in (given, value) if part]))
     return [
         f"{pad}for (size_t k = 0; k < count; k++) {{",
         *(f"{pad}  {row}" for row in values),
