@@ -93,6 +93,8 @@ PUBLIC = {
     "plus_minus": "desaxe.mechanism.ranges",
     "equation": "desaxe.derive.equation",
 }
+# Functions that take inputs: a call of a person's is looked at for slips of units, an inner one is not.
+WARN_OF_SLIPS = ("steady",)
 MODULES = {"plot": "desaxe.plot", "status": "desaxe.mechanism.status", "units": "desaxe.units"}
 
 __all__ = [
@@ -153,6 +155,8 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module 'desaxe' has no attribute {name!r}")
     with _explained(name):
         value = getattr(_import_whole(PUBLIC[name]), name)
+    if name in WARN_OF_SLIPS:
+        value = _import_whole("desaxe.mechanism.slips").warning(value)
     globals()[name] = value
     return value
 

@@ -21,10 +21,10 @@ from ..loads.resolve import without_loads
 from ..mechanism.catalogue import has, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs, with_known_keywords
+from ..mechanism.messages import named
 from ..mechanism.names import sensitivity
 from ..mechanism.quantity_units import unit_of
 from ..mechanism.ranges import Between, PlusMinus, ends_of, refuse_bare_pair
-from ..mechanism.spoken import named
 from ..mechanism.status import EnclosureStatus
 from ..runtime.request import Request, as_number, check_common, request
 from ..runtime.specialise import specialise
@@ -192,7 +192,7 @@ def _interval(name: str, value: Any, wanted: str) -> Interval:
     if low is None or high is None:
         raise ValueError(f"{name} = {shown(value)}: {ENDS}")
     if low > high:
-        raise ValueError(f"{named(name, value)}: expected two numbers, the lower one first")
+        raise ValueError(named(name, value) + ": expected two numbers, the lower one first")
     return low, high
 
 

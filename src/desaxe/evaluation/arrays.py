@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
 from ..mechanism.inputs import INPUTS, SAFE, Input, is_good, limit_of
+from ..mechanism.messages import amount, named
 from ..mechanism.read import read_array
-from ..mechanism.spoken import named, spoken
 from ..runtime.kernels import KernelKey, key_of, tells_unsafe
 from ..runtime.point import point_of
 from ..runtime.request import Request, as_number
@@ -73,14 +73,15 @@ def number_or_array(row: Input, value: Any) -> Array:
     """The array of `read_array`; ValueError for a number that is not finite."""
     array = read_array(row, value)
     if not array.ndim and not np.isfinite(array):
-        raise ValueError(f"{named(row.name, value)}: it must be {row.limit}")
+        raise ValueError(named(row.name, value) + f": it must be {row.limit}")
     return array
 
 
 def _not_wholly_bad(name: str, array: Array) -> Array:
     if array.size and not is_good(name, array.item(0)) and not are_good(name, array).any():
-        first = spoken(name, array.item(0))
-        raise ValueError(f"{name}: every value is bad, the first is {first}; {limit_of(name, array.item(0))}")
+        first = amount(name, array.item(0))
+        limit = limit_of(name, array.item(0))
+        raise ValueError(f"{name}: every value is bad, the first is " + first + f"; {limit}")
     return array
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..mechanism.inputs import INPUTS
+from ..mechanism.messages import Message
 from ..mechanism.quantity_units import SI, UnitSystem, conversion_of
 from ..support.answer import Answer
 from ..support.forks import IMPORTS
@@ -35,6 +36,14 @@ class Shown(NamedTuple):
         """A value of an answer, whose unit is a text, or a mapping of units by key."""
         if type(value) is float and isinstance(unit, str):  # the most usual one first
             return self.number(value, conversion_of(unit, self.system))
+        if isinstance(value, Message):
+            return value.in_units(self.system)
+        if getattr(getattr(value, "dtype", None), "hasobject", False):  # designs, each with its own entry
+            found = value.copy()
+            flat = found.reshape(-1)
+            for k, part in enumerate(flat):
+                flat[k] = self.entry(part, unit)
+            return found
         if unit is None or value is None or isinstance(value, (str, bool)):
             return value
         if hasattr(value, "dims"):
@@ -49,12 +58,6 @@ class Shown(NamedTuple):
             return value._replace(**self.entry({key: getattr(value, key) for key in unit}, unit))
         if isinstance(value, (tuple, list)):
             return type(value)(self.entry(part, unit) for part in value)
-        if getattr(getattr(value, "dtype", None), "hasobject", False):  # designs, each with its own entry
-            found = value.copy()
-            flat = found.reshape(-1)
-            for k, part in enumerate(flat):
-                flat[k] = self.entry(part, unit)
-            return found
         return self.number(value, conversion_of(unit, self.system))
 
     def texts(self, units: Mapping[Any, Any]) -> dict[Any, Any]:

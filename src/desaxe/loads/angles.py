@@ -10,7 +10,7 @@ from ..mechanism.closed import TURN
 from ..mechanism.closed.angles import dead_centres, passages, repeated
 from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
-from ..mechanism.spoken import spoken
+from ..mechanism.messages import amount
 from .function import naming
 from .load import Load, OverTheta, OverY
 from .stroke import OverStroke
@@ -60,16 +60,14 @@ def turns_of(caller: str, loads: Mapping[str, Load], most: int) -> int:
         with naming(name):
             periodic = load.is_periodic
         if own is None or not periodic:
-            period = spoken("theta", load.period, ".6g", True)
-            reason = f"its period is {period}"
+            period = amount("theta", load.period, ".6g", says_unit=True)
+            reason = "its period is " + period
             if not periodic:
-                reason = (
-                    f"this function does not after {period}: over_theta(function, period=...) sets its period"
-                )
-            raise ValueError(
-                f"{name}: {caller} is over {'a turn' if most == 1 else f'at most {most} turns'}, after which "
-                f"the load must repeat; {reason}"
-            )
+                remedy = ": over_theta(function, period=...) sets its period"
+                reason = "this function does not after " + period + remedy
+            longest = "a turn" if most == 1 else f"at most {most} turns"
+            rule = f"{name}: {caller} is over {longest}, after which the load must repeat; "
+            raise ValueError(rule + reason)
         turns = turns * own // gcd(turns, own)
     return turns
 

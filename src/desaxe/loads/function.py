@@ -7,7 +7,7 @@ from math import isfinite
 from typing import Any
 
 from ..mechanism.closed import TURN
-from ..mechanism.spoken import named
+from ..mechanism.messages import message_of, named
 from ..support.computed import computed_once
 from ..support.forks import IMPORTS
 from .load import OverTheta
@@ -106,10 +106,9 @@ def called(function: Callable[[Any], Any], theta: Any, what: str) -> Any:
     found = np.broadcast_to(found.astype(float), theta.shape)
     bad = np.isfinite(theta) & ~np.isfinite(found)
     if bad.any():
-        raise ValueError(
-            f"{what}: the function gave {found[bad].flat[0]} at {named('theta', theta[bad].flat[0], 'g')}: "
-            "it must be finite"
-        )
+        where = named("theta", theta[bad].flat[0], "g")
+        value = f"{what}: the function gave {found[bad].flat[0]} at " + where
+        raise ValueError(value + ": it must be finite")
     return found
 
 
@@ -117,20 +116,16 @@ def _one(function: Callable[[Any], Any], theta: float, what: str) -> float:
     try:
         found = function(theta)
     except Exception as error:
-        kind = type(error).__name__
-        raise ValueError(
-            f"{what}: the function failed at {named('theta', theta, 'g')}: {kind}: {error}"
-        ) from error
+        failed = f"{what}: the function failed at " + named("theta", theta, "g")
+        raise ValueError(failed + f": {type(error).__name__}: " + message_of(error)) from error
     try:
         number = float(found)
     except (TypeError, ValueError):
-        raise TypeError(
-            f"{what}: the function gave {found!r} at {named('theta', theta, 'g')}: expected a number"
-        ) from None
+        where = named("theta", theta, "g")
+        raise TypeError(f"{what}: the function gave {found!r} at " + where + ": expected a number") from None
     if isfinite(theta) and not isfinite(number):
-        raise ValueError(
-            f"{what}: the function gave {number} at {named('theta', theta, 'g')}: it must be finite"
-        )
+        where = named("theta", theta, "g")
+        raise ValueError(f"{what}: the function gave {number} at " + where + ": it must be finite")
     return number
 
 
@@ -140,6 +135,7 @@ def naming(name: str) -> Iterator[None]:
     try:
         yield
     except (TypeError, ValueError) as error:
-        if not str(error).startswith("the load"):
+        message = message_of(error)
+        if not message.startswith("the load"):
             raise
-        raise type(error)(f"{name}: {str(error).removeprefix('the load: ')}") from error.__cause__
+        raise type(error)(f"{name}: " + message.removeprefix("the load: ")) from error.__cause__

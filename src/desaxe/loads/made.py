@@ -7,7 +7,8 @@ from math import isfinite
 from typing import Any
 from warnings import warn
 
-from ..mechanism.spoken import spoken
+from ..mechanism.messages import amount
+from ..mechanism.quantity_units import SI, UnitSystem
 from ..support.shown import shown
 from .columns import Column
 from .load import Load, LoadWarning, OverY, TableOverTheta
@@ -19,8 +20,13 @@ WIDE = 4.0  # times the usual distance between points
 EQUAL = 1e-9  # of the largest value: what differs by less is the same
 
 
-def table_over_theta(angles: Column, values: Column, kind: str, turn: Column) -> Load:
-    """A load over the crank angle; ValueError where the columns are no periodic table."""
+def table_over_theta(
+    angles: Column, values: Column, kind: str, turn: Column, units: UnitSystem | None = None
+) -> Load:
+    """A load over the crank angle; ValueError where the columns are no periodic table.
+
+    units  of a warning
+    """
     name = "over_theta"
     x, y, period = angles.values, values.values, turn.values[0]
     _check(name, "angles", x, [y], kind)
@@ -28,11 +34,9 @@ def table_over_theta(angles: Column, values: Column, kind: str, turn: Column) ->
     span = x[-1] - x[0]
     if span > (1.0 + CLOSED) * period:
         hint = f' (degrees are texts: "{x[-1]:g} deg")' if angles.plain else ""
-        wide, turn_text = (spoken("theta", angle, "g", says_unit=True) for angle in (span, period))
-        raise ValueError(
-            f"{name}: the angles go over {wide}, the period is {turn_text}; give a longer period= "
-            f"or one period of the table{hint}"
-        )
+        wide, turn_text = (amount("theta", angle, "g", says_unit=True) for angle in (span, period))
+        remedy = f"; give a longer period= or one period of the table{hint}"
+        raise ValueError(f"{name}: the angles go over " + wide + ", the period is " + turn_text + remedy)
     if span >= (1.0 - CLOSED) * period:
         if abs(y[-1] - y[0]) > EQUAL * max(map(abs, y)):
             raise ValueError(
@@ -42,7 +46,7 @@ def table_over_theta(angles: Column, values: Column, kind: str, turn: Column) ->
         x, y = x[:-1], y[:-1]
         if len(x) == 1:  # both ends of a period alone: the same everywhere
             x, y = [x[0], x[0] + 0.5 * period], 2 * y
-    _warn_of_gap(x, kind, period)
+    _warn_of_gap(x, kind, period, units)
     plain = ("theta",) * (angles.plain or turn.plain) + ("value",) * values.plain
     table = _finite(name, x, y, partial(periodic, x, y, kind, period))
     return TableOverTheta(table, kind, values.unit, plain)
@@ -63,14 +67,15 @@ def _finite(name: str, x: Sequence[float], y: Sequence[float], make: Callable[[]
     return table
 
 
-def _warn_of_gap(x: list[float], kind: str, period: float) -> None:
+def _warn_of_gap(x: list[float], kind: str, period: float, units: UnitSystem | None) -> None:
     """Warn of a spline with a gap of most of a turn between two points."""
     gaps = sorted(b - a for a, b in zip(x, [*x[1:], x[0] + period], strict=True))
     if kind == "cubic" and gaps[-1] > max(period / 4.0, WIDE * gaps[len(gaps) // 2]):
-        gap = spoken("theta", gaps[-1], ".3g", True)
+        rule = " without a point, which a cubic spline bridges with a wide swing; "
+        remedy = 'give points there too, or kind="linear" or "step"'
+        gap = "over_theta: a gap of " + amount("theta", gaps[-1], ".3g", says_unit=True)
         warn(
-            f"over_theta: a gap of {gap} without a point, which a cubic spline bridges with a "
-            'wide swing; give points there too, or kind="linear" or "step"',
+            (gap + rule + remedy).in_units(units or SI),
             LoadWarning,
             stacklevel=6,
         )
@@ -93,8 +98,8 @@ def table_over_stroke(distances: Column, ways: Sequence[Column], kind: str, dead
         )
     wrong = next((x for x in distances.values if x < 0.0), None)
     if wrong is not None:
-        distance = spoken("Y", wrong, "g", True)
-        raise ValueError(f"over_stroke: the distance {distance} is below 0: distances have no sign")
+        distance = amount("Y", wrong, "g", says_unit=True)
+        raise ValueError("over_stroke: the distance " + distance + " is below 0: distances have no sign")
     outward, inward = _both_ways("over_stroke", "distances", distances, ways, kind)
     return OverStroke(outward, inward, kind, *_given("Y", distances, ways), dead_centre)
 
@@ -135,8 +140,8 @@ def _require_order(name: str, places: str, order: str, x: Sequence[float], kind:
     """ValueError for places out of order; one given twice is a jump of a linear table."""
 
     def follows(b: float, a: float) -> str:
-        one, other = (spoken("theta" if places == "angles" else "Y", place, "g") for place in (b, a))
-        return f"{name}: the {places} must {order}, but {one} follows {other}"
+        one, other = (amount("theta" if places == "angles" else "Y", place, "g") for place in (b, a))
+        return f"{name}: the {places} must {order}, but " + one + " follows " + other
 
     found = next(((a, b) for a, b in pairwise(x) if not a <= b), None)
     if found is not None:

@@ -6,8 +6,8 @@ from functools import wraps
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..mechanism.keywords import with_known_keywords
+from ..mechanism.messages import errors_in, message_of
 from ..mechanism.quantity_units import SI, UnitSystem
-from ..mechanism.spoken import speaking
 from ..support.forks import IMPORTS
 from ..support.shown import printable
 from ..units.system import Conversion
@@ -58,7 +58,7 @@ def naming(source: Any) -> Iterator[None]:
         yield
     except ValueError as error:
         name = "data" if hasattr(source, "columns") else printable(source)
-        raise ValueError(f"{name}: {error}") from None
+        raise ValueError(f"{name}: " + message_of(error)) from None
 
 
 def _in_its_units(method: Callable[..., Any]) -> Callable[..., Any]:
@@ -71,7 +71,7 @@ def _in_its_units(method: Callable[..., Any]) -> Callable[..., Any]:
         if len(args) > most:
             told = f"takes from {least} to {most} positional arguments but {len(args)} were given"
             raise TypeError(f"{method.__qualname__}() {told}")
-        with speaking(self.units or SI):
+        with errors_in(self.units or SI):
             found = method(self, *args, **named)
         if self.units and hasattr(found, "told"):
             object.__setattr__(found, "shown_in", self.units)

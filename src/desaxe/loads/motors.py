@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.inputs import TINY, Input
+from ..mechanism.messages import Message, amount, listed, named
 from ..mechanism.quantity_units import SI, UnitSystem
 from ..mechanism.read import read_array
 from ..mechanism.slips import warn_of_slips
-from ..mechanism.spoken import UNITS, named, speaking, spoken
 from ..support.shown import shown
 from .columns import Column, column_of
 from .maker import Maker, naming
@@ -74,11 +74,10 @@ class Motor(ABC):
         return self
 
     def __repr__(self) -> str:
-        with speaking(UNITS.get() or self.units or SI):
-            return f"<{self._told()}>"
+        return f"<{self._text().in_units(self.units or SI)}>"
 
     @abstractmethod
-    def _told(self) -> str:
+    def _text(self) -> Message:
         """Return its kind and its numbers as text."""
 
 
@@ -89,7 +88,7 @@ class OverOmega(Motor):
     table: Table
     kind: str
     plain: tuple[str, ...] = field(default=(), compare=False)
-    units: UnitSystem | None = field(default_factory=UNITS.get, compare=False)
+    units: UnitSystem | None = field(default=None, compare=False)
 
     @property
     def knots(self) -> tuple[float, ...]:  # type: ignore[override]
@@ -108,9 +107,9 @@ class OverOmega(Motor):
         between = np.interp(np.arange(0.0, len(self.knots) - 0.9, 0.25), range(len(self.knots)), self.knots)
         return np.concatenate([between, most * np.linspace(-3.0, 3.0, 49)])
 
-    def _told(self) -> str:
-        low, high = (spoken("torque", end(self.table.values), "g", True) for end in (min, max))
-        return f"motor over omega: {len(self.knots)} speeds, {self.kind}, {low} to {high}"
+    def _text(self) -> Message:
+        low, high = (amount("torque", end(self.table.values), "g", says_unit=True) for end in (min, max))
+        return f"motor over omega: {len(self.knots)} speeds, {self.kind}, " + low + " to " + high
 
 
 @dataclass(frozen=True, repr=False)
@@ -122,7 +121,7 @@ class Kloss(Motor):
     synchronous_speed: Any
     gear: Any = 1.0
     plain: tuple[str, ...] = field(default=(), compare=False)
-    units: UnitSystem | None = field(default_factory=UNITS.get, compare=False)
+    units: UnitSystem | None = field(default=None, compare=False)
     call: ClassVar[str] = "kloss"
     SLIPS: ClassVar[Array] = np.geomspace(0.05, 20.0, 7)  # over the breakdown slip
 
@@ -165,8 +164,8 @@ class Kloss(Motor):
         found: Array = (1.0 - np.clip(slips, -3.0, 1.0)) * speed / gear
         return found
 
-    def _told(self) -> str:
-        return "induction motor: " + ", ".join(named(name, value) for name, value in self.numbers.items())
+    def _text(self) -> Message:
+        return "induction motor: " + listed([named(name, value) for name, value in self.numbers.items()])
 
 
 def _bend(square: Any) -> Any:
@@ -199,7 +198,7 @@ class MakeOverOmega(Maker):
         y = column_of("over_omega: torques", torques, ("N*m",), self.unit("torque"))
         if x.plain and self.units is None:
             warn_of_slips({"omega": max(x.values, key=abs, default=0.0)}, stacklevel=MAKING)
-        return table_over_omega(x, y, kind)
+        return table_over_omega(x, y, kind, self.units)
 
     def read(
         self,
@@ -220,10 +219,10 @@ class MakeOverOmega(Maker):
             ("torque", torque, ("N*m",), self.unit("torque")),
         )
         with naming(path):
-            return table_over_omega(x, y, kind)
+            return table_over_omega(x, y, kind, self.units)
 
 
-def table_over_omega(x: Column, y: Column, kind: str) -> Motor:
+def table_over_omega(x: Column, y: Column, kind: str, units: UnitSystem | None) -> Motor:
     """A motor from columns of speeds and torques; ValueError where they are no function."""
     if not isinstance(kind, str) or kind not in KINDS:
         raise ValueError(f"over_omega: kind = {shown(kind)}: it is one of {', '.join(KINDS)}")
@@ -236,12 +235,12 @@ def table_over_omega(x: Column, y: Column, kind: str) -> Motor:
     steps = np.diff(x.values)
     if not (steps > 0.0).all():
         at = int(np.argmin(steps))
-        one, next = (spoken("omega", x.values[k], "g") for k in (at, at + 1))
-        raise ValueError(f"over_omega: the speeds must ascend, but {next} follows {one}")
+        one, next = (amount("omega", x.values[k], "g") for k in (at, at + 1))
+        raise ValueError("over_omega: the speeds must ascend, but " + next + " follows " + one)
     table = held(x.values, y.values, kind)
     if not np.isfinite(table.rows).all():
         raise ValueError("over_omega: two speeds are too close for the torques there")
-    return OverOmega(table, kind, ("omega",) * x.plain + ("torque",) * y.plain)
+    return OverOmega(table, kind, ("omega",) * x.plain + ("torque",) * y.plain, units)
 
 
 class MakeKloss(Maker):
@@ -272,7 +271,7 @@ class MakeKloss(Maker):
         most, slip, speed, ratio = (_numbers(row, value, self.units) for row, value in written.items())
         kinds = {"N*m": "torque", "rad/s": "omega"}
         plain = [kinds[row.unit] for row, value in written.items() if row.unit in kinds and _is_plain(value)]
-        return Kloss(most, slip, speed, ratio, () if self.units else tuple(plain))
+        return Kloss(most, slip, speed, ratio, () if self.units else tuple(plain), self.units)
 
 
 def _numbers(row: Input, value: Any, units: UnitSystem | None) -> Any:
@@ -285,7 +284,7 @@ def _numbers(row: Input, value: Any, units: UnitSystem | None) -> Any:
         ) from None
     wrong = ~np.isfinite(array) | (array == 0.0 if row.least is None else array < row.least)
     if wrong.any():
-        raise ValueError(f"{named(row.name, array[wrong].item(0))}: it must be {row.limit}")
+        raise ValueError(named(row.name, array[wrong].item(0)) + f": it must be {row.limit}")
     return array if array.ndim else array.item()
 
 

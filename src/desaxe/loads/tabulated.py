@@ -6,9 +6,9 @@ from typing import Any
 from warnings import warn
 
 from ..mechanism.closed import TURN
+from ..mechanism.messages import amount
 from ..mechanism.quantity_units import UnitSystem
 from ..mechanism.slips import LARGEST, UnitWarning
-from ..mechanism.spoken import spoken
 from ..support.shown import shown
 from ..units.system import Conversion
 from .columns import Column, column_of, places_and_values
@@ -83,7 +83,7 @@ class MakeOverTheta(Maker):
         if values is None:
             raise TypeError(f"{name}: values is missing (angles and values, or a function of theta)")
         y = column_of(f"{name}: values", values, ("N", "N*m"), _force(self.units))
-        return table_over_theta(x, y, kind, turn)
+        return table_over_theta(x, y, kind, turn, self.units)
 
     def read(
         self,
@@ -111,16 +111,16 @@ class MakeOverTheta(Maker):
             ("value", value, ("N", "N*m"), _force(self.units)),
         )
         with naming(path):
-            return table_over_theta(x, y, kind, self._period(period))
+            return table_over_theta(x, y, kind, self._period(period), self.units)
 
     def _period(self, period: Any) -> "Column":
         if isinstance(period, float) and period == TURN:  # a turn, in any unit
             return Column([TURN])
         found = column_of("over_theta: period", [period], ("rad",), self.unit("theta"))
         if not 0.0 < found.values[0] <= LONGEST_PERIOD:
-            most = spoken("theta", LONGEST_PERIOD, "g", says_unit=True)
-            limit = f"expected an angle above 0 and at most {most}"
-            raise ValueError(f"over_theta: period = {shown(period)}: {limit}")
+            most = amount("theta", LONGEST_PERIOD, "g", says_unit=True)
+            limit = ": expected an angle above 0 and at most " + most
+            raise ValueError(f"over_theta: period = {shown(period)}" + limit)
         return found
 
 

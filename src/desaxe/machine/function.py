@@ -5,9 +5,9 @@ from typing import Any
 
 from ..evaluation.in_units import Shown
 from ..mechanism.inputs import INPUTS
+from ..mechanism.messages import errors_in
 from ..mechanism.quantity_units import unit_of
 from ..mechanism.read import in_si
-from ..mechanism.spoken import speaking
 
 
 class FunctionInUnits:
@@ -25,7 +25,7 @@ class FunctionInUnits:
 
     def __call__(self, *args: Any, out: Any = None, **named: Any) -> Any:
         """The values: an array for a name, a tuple for a list of names."""
-        with speaking(self._show.system):
+        with errors_in(self._show.system):
             found = self.si(*self._positional(args), **self._named(named))
         if not isinstance(found, tuple):
             shown = self._value(found, self.names[0])
@@ -38,7 +38,7 @@ class FunctionInUnits:
 
     def jacobian(self, *args: Any, **named: Any) -> dict[str, dict[str, Any]]:
         """The exact derivatives by the inputs: dict name -> dict input -> array."""
-        with speaking(self._show.system):
+        with errors_in(self._show.system):
             found = self.si.jacobian(*self._positional(args), **self._named(named))
         return {
             name: {by: self._show.entry(value, unit_of(name, by)) for by, value in row.items()}

@@ -10,10 +10,10 @@ from ..loads.resolve import settled
 from ..loads.tabulated import MakeOverStroke, MakeOverTheta, MakeOverY
 from ..mechanism.inputs import INPUTS, is_good
 from ..mechanism.keywords import unknown_input
+from ..mechanism.messages import errors_in, named
 from ..mechanism.own import Definition
 from ..mechanism.quantity_units import SI, UnitSystem
 from ..mechanism.slips import warn_of_slips
-from ..mechanism.spoken import named, speaking
 from ..runtime.request import MachineSpeed, as_number, check_common
 from ..support.forks import IMPORTS
 from .arguments import in_si
@@ -127,7 +127,7 @@ class Machine(Mapping[str, Any]):
         system = UnitSystem.read(units)
         plain = {} if isinstance(source, Machine) or (source and is_scene(source)) else given
         named = {**plain, **inputs}
-        with speaking(system):
+        with errors_in(system):
             si = {**given, **{key: in_si(system, key, value) for key, value in named.items()}}
             checked = _checked_inputs(si)
         warn_of_slips(named, system, inputs=checked)
@@ -167,7 +167,7 @@ class Machine(Mapping[str, Any]):
         kept = {key: value for key, value in self.items() if key not in gone}
         system = UnitSystem.read(units)
         given = {**self.in_units(), **inputs} if system == self.units else inputs
-        with speaking(system):
+        with errors_in(system):
             new = {key: in_si(system, key, value) for key, value in inputs.items() if value is not None}
             checked = _checked_inputs({**kept, **new})
         loaded = checked if {"BC", "F_X", "F_Y"} & {*inputs} else {}
@@ -401,5 +401,5 @@ def _checked(name: str, value: Any) -> Any:
         )
     bad = next((v for v in array.tolist() if not is_good(name, v)), None)
     if bad is not None or not array.size:
-        raise ValueError(f"{named(name, bad)}: it must be {INPUTS[name].limit}")
+        raise ValueError(named(name, bad) + f": it must be {INPUTS[name].limit}")
     return array.copy()

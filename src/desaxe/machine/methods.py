@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 
 from ..evaluation.in_units import Shown
 from ..mechanism.inputs import INPUTS
+from ..mechanism.messages import errors_in
 from ..mechanism.own import using
 from ..mechanism.ranges import refuse_bare_pair
 from ..mechanism.slips import warn_of_slips
-from ..mechanism.spoken import speaking
 from ..runtime.request import MachineSpeed
 from ..support.forks import IMPORTS, imported
 from .arguments import in_si
@@ -150,7 +150,7 @@ def call(
             refuse_bare_pair(key, inputs[key])
     named = {**dict(zip(positional, args, strict=False)), **inputs}
     warn_of_slips(named, system, stacklevel=4)
-    with speaking(system):
+    with errors_in(system):
         given = {key: in_si(system, key, value) for key, value in named.items()}
         if system and "units" in takes.names:
             given.setdefault("units", system)

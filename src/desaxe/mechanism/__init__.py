@@ -11,7 +11,7 @@ constants     coefficients of the written-out sine and cosine
 closed        closed forms of the geometry as Programs: limit angles, dead centres, the inverse
 status        the status codes of every call, with their words
 quantity_units  units of inputs, quantities and their derivatives, in SI and in any system
-spoken        numbers in messages, in the units of the machine or scene whose call it is
+messages      texts that know which of their numbers are quantities, for a front end's units
 ranges        `between` and `plus_minus`: inputs with a range or tolerance
 slips         plain numbers that are almost surely in another unit
 own           user-defined quantities: the register

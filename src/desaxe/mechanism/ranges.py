@@ -12,8 +12,8 @@ from ..support.shown import shown
 from ..units.parse import exact, rounded
 from ..units.text import with_unit_of
 from .inputs import INPUTS
+from .messages import named
 from .read import in_si
-from .spoken import named
 
 
 class PlusMinus(NamedTuple):
@@ -83,7 +83,7 @@ def middle_of(name: str, given: Between) -> tuple[float, float]:
     """The middle of a range and half its width; ValueError where the lower end is not first."""
     low, high = (_number(name, end, given) for end in given)
     if low > high:
-        raise ValueError(f"{named(name, given)}: the lower end comes first")
+        raise ValueError(named(name, given) + ": the lower end comes first")
     return rounded(name, str(given), (low + high) / 2), rounded(name, str(given), (high - low) / 2)
 
 
@@ -96,7 +96,7 @@ def _tolerance(name: str, given: PlusMinus) -> tuple[Fraction, Fraction]:
     else:
         found = _number(name, tolerance, given)
     if found < 0:
-        raise ValueError(f"{named(name, given)}: a tolerance must be at least 0")
+        raise ValueError(named(name, given) + ": a tolerance must be at least 0")
     return value, found
 
 

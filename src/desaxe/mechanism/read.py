@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..support.forks import IMPORTS
 from ..support.shown import shown
 from .inputs import INPUTS, Input, is_beyond, limit_of
-from .spoken import named
+from .messages import named
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,9 +33,9 @@ def number_of(row: Input, value: Any, system: "UnitSystem | None" = None) -> flo
     except OverflowError:
         raise ValueError(f"{row.name} = {shown(value)}: it must be {row.limit}, at most 1.8e308") from None
     if not (-inf < number < inf and (row.least is None or row.least <= number)):
-        raise ValueError(f"{named(row.name, value)}: it must be {row.limit}")
+        raise ValueError(named(row.name, value) + f": it must be {row.limit}")
     if row.name in INPUTS and is_beyond(row.name, number):
-        raise ValueError(f"{named(row.name, value)}: {limit_of(row.name, number)}")
+        raise ValueError(named(row.name, value) + f": {limit_of(row.name, number)}")
     return number
 
 
@@ -51,7 +51,7 @@ def read(
     if value is None:
         raise TypeError(f"{row.name} is missing: {caller} expects {expected}")
     if number is None:
-        raise TypeError(f"{named(row.name, value)}: {caller} expects {expected}")
+        raise TypeError(named(row.name, value) + f": {caller} expects {expected}")
     return number
 
 

@@ -6,16 +6,19 @@ no size of its own by which a slip would show; but none is larger than what the 
 
 import sys
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import wraps
 from math import isclose, pi
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 from ..support.shown import with_unit
 from ..units.text import plain_number
 from .quantity_units import SI, UnitSystem
 from .ranges import Between, PlusMinus
 
+P = ParamSpec("P")
+T = TypeVar("T")
 SIZES = ("ec", "AB", "BC", "r_crank", "r_rod")
 LARGEST = {
     **dict.fromkeys(SIZES, 20.0),
@@ -49,6 +52,18 @@ REMEDIES = {
 
 class UnitWarning(UserWarning):
     """A number that is almost surely meant in another unit than it is taken for."""
+
+
+def warning(function: Callable[P, T]) -> Callable[P, T]:
+    """Make the public function of `desaxe`: it warns of slips in its keywords, which are in SI units."""
+
+    @wraps(function)
+    def public(*args: P.args, **inputs: P.kwargs) -> T:
+        warn_of_slips(inputs, inputs=inputs)
+        return function(*args, **inputs)
+
+    public.__module__ = "desaxe"
+    return public
 
 
 def warn_of_slips(

@@ -22,8 +22,8 @@ from ..loads.resolve import VARIABLE
 from ..mechanism.closed import TURN
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs
+from ..mechanism.messages import named
 from ..mechanism.quantity_units import units_of_extreme
-from ..mechanism.spoken import named
 from ..mechanism.status import PeakStatus
 from ..runtime.request import as_number, check_common
 from ..support.answer import Answer
@@ -116,14 +116,14 @@ def _range(theta: Any, name: str) -> tuple[float, float]:
     try:
         first, last = theta
     except (TypeError, ValueError):
-        raise ValueError(f"{named('theta', theta)}: expected a range (lower end, upper end)") from None
+        raise ValueError(named("theta", theta) + ": expected a range (lower end, upper end)") from None
     low, high = (as_number("theta", end, ("theta",), (name,)) for end in (first, last))
     if low is None or high is None or low > high:
-        raise ValueError(f"{named('theta', (first, last))}: two angles, the lower one first")
+        raise ValueError(named("theta", (first, last)) + ": two angles, the lower one first")
     if high - low > MOST_TURNS * TURN:
         turns = (high - low) / TURN
         raise ValueError(
-            f"{named('theta', (low, high), 'g')}: {turns:.3g} turns are too many, at most {MOST_TURNS}"
+            named("theta", (low, high), "g") + f": {turns:.3g} turns are too many, at most {MOST_TURNS}"
         )
     return low, high
 

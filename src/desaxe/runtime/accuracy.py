@@ -7,7 +7,7 @@ last digits of the inputs change anyway is not counted against it.
 from typing import Any
 
 from ..mechanism.constants import double_constants
-from ..mechanism.spoken import named, spoken
+from ..mechanism.messages import amount, named
 from ..support.shown import shown
 
 ACCURACIES = ("standard", "extended")
@@ -31,5 +31,5 @@ def accuracy_of(asked: Any) -> str:
 def check_angle(accuracy: str, theta: float) -> None:
     """Refuse an angle that the accuracy cannot reduce exactly."""
     if accuracy == "extended" and abs(theta) > double_constants().limit:
-        reach = spoken("theta", double_constants().limit, ".0f", says_unit=True)
-        raise ValueError(f"{named('theta', theta)}: accuracy='extended' reaches |theta| <= {reach}")
+        reach = amount("theta", double_constants().limit, ".0f", says_unit=True)
+        raise ValueError(named("theta", theta) + ": accuracy='extended' reaches |theta| <= " + reach)

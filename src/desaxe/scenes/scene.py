@@ -7,9 +7,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from ..mechanism.messages import errors_in
 from ..mechanism.own import change, using
 from ..mechanism.quantity_units import SI, UnitSystem
-from ..mechanism.spoken import speaking
 from ..support.progress import Progress, progress_bar
 from ..support.shown import printable
 from .content import Content
@@ -97,7 +97,7 @@ class Scene:
         cannot be written; NotWrittenError, which has the result, where writing failed after all.
         """
         meter = progress_bar() if progress is None else nullcontext(progress)
-        with meter as watch, using(self.content.definitions), speaking(self.shown_in):
+        with meter as watch, using(self.content.definitions), errors_in(self.shown_in):
             steps = steps_of(self.content, watch)
             found = compute(self.content, steps, overwrite)
             found = write_files(self.content, found, steps, self.shown_in, overwrite)

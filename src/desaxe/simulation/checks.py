@@ -14,10 +14,10 @@ from ..mechanism.catalogue import quantity
 from ..mechanism.closed import TURN
 from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.inputs import INPUTS, Input
+from ..mechanism.messages import Message, amount, listed, named
 from ..mechanism.names import CENTRES, LENGTHS, LOADS, MASSES
 from ..mechanism.read import read
 from ..mechanism.spelling import did_you_mean
-from ..mechanism.spoken import named, spoken
 from ..runtime.request import several
 from ..support.deadline import Deadline
 from ..support.shown import shown
@@ -111,14 +111,11 @@ def model_of(values: Mapping[str, float], branch: int, theta0: float, drive: Act
     lengths = tuple(values[name] for name in LENGTHS)
     arc = arc_around(theta0, *lengths)
     if arc is None:
-        raise ValueError(
-            f"theta0 = {spoken('theta', theta0, 'g')}: it cannot be assembled there; {_feasible(lengths)}"
-        )
+        start = "theta0 = " + amount("theta", theta0, "g")
+        raise ValueError(start + ": it cannot be assembled there; " + _feasible(lengths))
     if not inside(arc, theta0):
-        raise ValueError(
-            f"theta0 = {spoken('theta', theta0)}: that is a limit angle (S = 0), where no motion can start; "
-            f"{_feasible(lengths)}"
-        )
+        limit = ": that is a limit angle (S = 0), where no motion can start; "
+        raise ValueError("theta0 = " + amount("theta", theta0) + limit + _feasible(lengths))
     model = Model(values, branch, Coordinate(*arc, 0.0), drive) if isfinite(arc[0] - arc[1]) else None
     if model is None:
         model = Model(values, branch, FREE, drive)
@@ -138,31 +135,31 @@ def grows(values: Mapping[str, float]) -> bool:
     return values["m_slider"] > 0.0 or values["I_rod"] > 0.0 or swings
 
 
-def _feasible(lengths: tuple[float, ...]) -> str:
-    found = [
-        f"{spoken('theta', first, '.6g', True)} to {spoken('theta', last, '.6g', True)}"
-        for first, last in theta_intervals(*lengths)
-    ]
-    told = ", ".join(f"{named(name, value, 'g')}" for name, value in zip(LENGTHS, lengths, strict=True))
-    return f"with {told} theta goes {' or '.join(found)}" if found else f"{told}: there is no mechanism"
+def _feasible(lengths: tuple[float, ...]) -> Message:
+    def angle(theta: float) -> Message:
+        return amount("theta", theta, ".6g", says_unit=True)
+
+    arcs = [angle(first) + " to " + angle(last) for first, last in theta_intervals(*lengths)]
+    design = listed([named(name, value, "g") for name, value in zip(LENGTHS, lengths, strict=True)])
+    if not arcs:
+        return design + ": there is no mechanism"
+    return "with " + design + " theta goes " + listed(arcs, " or ")
 
 
 def _check_inertia(model: Model, theta0: float) -> None:
     inertia = model.inertia(theta0)
     if isnan(inertia):
-        raise ValueError(
-            f"theta0 = {spoken('theta', theta0, 'g')}: the effective inertia is not finite there"
-        )
+        start = "theta0 = " + amount("theta", theta0, "g")
+        raise ValueError(start + ": the effective inertia is not finite there")
     gaps = {which: _gap(theta0, angle) for which, angle in model.vanishing().items()}
     near = [which for which, gap in gaps.items() if gap <= SMALL]
     if near or inertia <= 0.0:
         moves = any(model.values[name] for name in MASSES)
         where = f" (the {near[0]} dead centre)" if near and moves else ""
-        there = f"M_eff = {spoken('M_eff', inertia, 'g', True)} at theta0 = {spoken('theta', theta0, 'g')}"
-        raise ValueError(
-            f"{there}{where}: nothing moves without inertia; "
-            f"give {'m_crank or I_crank' if moves else 'masses'}, M_eff must be > 0"
-        )
+        there = "M_eff = " + amount("M_eff", inertia, "g", says_unit=True)
+        remedy = f"give {'m_crank or I_crank' if moves else 'masses'}, M_eff must be > 0"
+        start = " at theta0 = " + amount("theta", theta0, "g") + where
+        raise ValueError(there + start + f": nothing moves without inertia; {remedy}")
 
 
 def _gap(theta: float, angle: float) -> float:
@@ -186,10 +183,9 @@ def read_times(times: Any, t_end: float) -> Any:
     wrong = (array < 0.0) | (array > t_end) | (np.diff(array, prepend=array[0]) < 0.0)
     if wrong.any():
         place = int(np.argmax(wrong))
-        raise ValueError(
-            f"times[{place}] = {spoken('t', array[place], 'g')}: "
-            f"instants must ascend from 0 to t_end = {spoken('t', t_end, 'g')}"
-        )
+        wrong_time, end = (amount("t", t, "g") for t in (array[place], t_end))
+        rule = ": instants must ascend from 0 to t_end = "
+        raise ValueError(f"times[{place}] = " + wrong_time + rule + end)
     return array
 
 

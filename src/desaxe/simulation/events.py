@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.closed import TURN
-from ..mechanism.spoken import named, spoken
+from ..mechanism.messages import Message, amount, named
 from ..support import roots
 from .checks import SMALL
 from .equations import Law, state_of
@@ -197,31 +197,31 @@ def root(function: Callable[..., float], a: float, b: float, *more: float) -> fl
 # ---- in words -------------------------------------------------------------------------------------
 
 
-def time_of(t: float) -> str:
+def time_of(t: float) -> Message:
     """An instant with its unit."""
-    return spoken("t", t, ".6g", says_unit=True)
+    return amount("t", t, ".6g", says_unit=True)
 
 
-def angle_of(theta: float) -> str:
+def angle_of(theta: float) -> Message:
     """A crank angle with its unit."""
-    return spoken("theta", theta, ".6g", says_unit=True)
+    return amount("theta", theta, ".6g", says_unit=True)
 
 
-def words_of(mark: Mark, t: float) -> str:
+def words_of(mark: Mark, t: float) -> Message:
     """The message of a motion that ends at a mark."""
     if mark.status == DONE:
-        return f"reached the angle {angle_of(mark.angle)} at t = {time_of(t)}"
+        return "reached the angle " + angle_of(mark.angle) + " at t = " + time_of(t)
     if mark.status == LIMIT:
-        told = f"reached the limit angle {angle_of(mark.angle)} (S = 0) at t = {time_of(t)}"
-        return f"{told}: beyond it there is no mechanism, or, at a change point, either branch"
-    return (
+        where = "reached the limit angle " + angle_of(mark.angle) + " (S = 0) at t = " + time_of(t)
+        return where + ": beyond it there is no mechanism, or, at a change point, either branch"
+    why = (
         f"the effective inertia vanishes at the {mark.which} dead centre: without m_crank and I_crank the "
-        f"crank has no speed there (M_eff -> 0); stopped {angle_of(SMALL)} before it at t = {time_of(t)}"
+        "crank has no speed there (M_eff -> 0); stopped "
     )
+    return why + angle_of(SMALL) + " before it at t = " + time_of(t)
 
 
-def failure(t: float, theta: float, omega: float, reason: str) -> str:
+def failure(t: float, theta: float, omega: float, reason: str) -> Message:
     """The message of a motion that could not be followed to its end."""
-    speed = spoken("omega", omega, ".6g")
-    where = f"at t = {time_of(t)}, {named('theta', theta, '.6g')}, omega = {speed}"
-    return f"the integration failed {where}: {reason}"
+    state = named("theta", theta, ".6g") + ", " + named("omega", omega, ".6g")
+    return "the integration failed at t = " + time_of(t) + ", " + state + f": {reason}"

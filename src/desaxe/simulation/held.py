@@ -18,7 +18,7 @@ from ..loads.load import Load, OverTheta, OverY, TableOverTheta
 from ..loads.table import polynomial
 from ..mechanism.closed import TURN
 from ..mechanism.closed.angles import dead_centres
-from ..mechanism.spoken import named
+from ..mechanism.messages import listed, named
 from ..support.checks import real_number
 from ..support.deadline import Deadline
 from ..support.shown import shown
@@ -145,10 +145,9 @@ class UserLoad:
                 f"{self.name} gave {shown(value)} at t = {t:g}: expected a number in {self.unit}"
             ) from None
         if not isfinite(number) and all(map(isfinite, passed)):
-            where = ", ".join(named(argument, x, "g") for argument, x in (now | {"t": t}).items())
-            raise ValueError(
-                f"{self.name} gave {number} at {where}: it must be a finite number in {self.unit}"
-            )
+            where = listed([named(argument, x, "g") for argument, x in (now | {"t": t}).items()])
+            limit = f": it must be a finite number in {self.unit}"
+            raise ValueError(f"{self.name} gave {number} at " + where + limit)
         return number
 
 

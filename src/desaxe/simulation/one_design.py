@@ -193,8 +193,8 @@ class MotionRun:
         state = self.state
         which = "no forces balance" if solutions == 0 else "two sets of forces balance"
         self.tell(JAMMED.kind, state, which)
-        where = f"at t = {time_of(self.t)}, theta = {angle_of(state.theta)}"
-        self.stop(JAMS, f"the friction jams {where}: {which}")
+        where = "at t = " + time_of(self.t) + ", theta = " + angle_of(state.theta)
+        self.stop(JAMS, "the friction jams " + where + f": {which}")
 
     # ---- at rest --------------------------------------------------------------------------------
 
@@ -215,13 +215,15 @@ class MotionRun:
         """Wait for the torque or load to break the crank away."""
         start, self.next_step = self.t, None
         if self.model.drive.steady:
-            self.stop(REST, f"at rest from t = {time_of(start)} on: the torque cannot move the crank there")
+            why = " on: the torque cannot move the crank there"
+            self.stop(REST, "at rest from t = " + time_of(start) + why)
             return
         moves = breaks_away(self.model, theta, branch, start, self.t_end)
         self.t = self.t_end if moves is None else moves
         self._keep_still(start)
         if moves is None:
-            self.stop(DONE, f"reached t_end = {time_of(self.t_end)}, at rest from t = {time_of(start)} on")
+            rest = ", at rest from t = " + time_of(start) + " on"
+            self.stop(DONE, "reached t_end = " + time_of(self.t_end) + rest)
         else:
             self.tell("break-away", self.state)
 
@@ -270,7 +272,7 @@ class MotionRun:
                 return
             self._accept(Piece(step.t, step.end, step.inside, law), solver.y.copy())
             self.left = inf
-        self.stop(DONE, f"reached t_end = {time_of(self.t_end)}")
+        self.stop(DONE, "reached t_end = " + time_of(self.t_end))
 
     def _accept(self, piece: Piece, y: Array) -> None:
         self.pieces.append(piece)
@@ -363,11 +365,8 @@ class MotionRun:
         kinds = {event.kind for event in last}
         if len(last) < CHATTER or kinds != {"standstill"} or last[-1].t - last[0].t > 1e-6 * self.t_end:
             return False
-        self.stop(
-            FAILED,
-            f"the crank chatters at standstill from t = {time_of(last[0].t)} on: torque or load jumps where "
-            "omega changes its sign; let it change over a small range of omega",
-        )
+        why = " on: torque or load jumps where omega changes its sign; let it change over a range of omega"
+        self.stop(FAILED, "the crank chatters at standstill from t = " + time_of(last[0].t) + why)
         return True
 
     def _speed_at_limit(self) -> float:

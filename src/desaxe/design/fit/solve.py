@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...mechanism.spoken import named
+from ...mechanism.messages import listed, named
 from ...support.extras import needed
 from .model import FittedModel
 from .projection import ProjectedModel
@@ -49,8 +49,8 @@ def solve(
         runs += [run for k in order if np.isfinite(costs[k]) for run in _run(model, loss, points[1 + k])]
     if not runs:
         values = zip(unknowns, points[0], strict=True)
-        where = ", ".join(f"{named(unknown.name, value, 'g')}" for unknown, value in values)
-        raise ValueError(f"fit: the mechanism cannot be assembled at every sample at the start: {where}")
+        where = listed([named(unknown.name, value, "g") for unknown, value in values])
+        raise ValueError("fit: the mechanism cannot be assembled at every sample at the start: " + where)
     evaluations = sum(run.evaluations for run in (*runs, *([before] if before else [])))
     return min(runs, key=lambda run: run.cost)._replace(evaluations=evaluations)
 

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...mechanism.inputs import INPUTS, LEAST
+from ...mechanism.messages import named
 from ...mechanism.read import read
 from ...mechanism.spelling import did_you_mean
-from ...mechanism.spoken import named
 from ...support.forks import IMPORTS
 from ...support.shown import shown
 from .data import MOST, Data
@@ -58,10 +58,10 @@ def _parameter(name: str, value: Any, fixed: Mapping[str, Any]) -> Unknown:
     least = LEAST.get(name, -inf)
     if isinstance(value, (tuple, list)):
         if len(value) != 2:
-            raise ValueError(f"over: {named(name, value)}: expected a start or (low, high)")
+            raise ValueError("over: " + named(name, value) + ": expected a start or (low, high)")
         low, high = (_number(name, end) for end in value)
         if not max(low, least) < high:
-            raise ValueError(f"over: {named(name, value)}: low must be below high")
+            raise ValueError("over: " + named(name, value) + ": low must be below high")
         _require_moderate(name, value, max(abs(low), abs(high)))
         start, low = 0.5 * (low + high), max(low, least)
         return Unknown(name, start, low, high, max(abs(low), abs(high)), ranged=True)
@@ -76,9 +76,8 @@ def _number(name: str, value: Any) -> float:
 
 def _require_moderate(name: str, value: Any, size: float) -> None:
     if size and not 1.0 / MOST <= size <= MOST:
-        raise ValueError(
-            f"over: {named(name, value)}: between {1.0 / MOST:g} and {MOST:g} in magnitude, or 0"
-        )
+        limit = f"between {1.0 / MOST:g} and {MOST:g} in magnitude, or 0"
+        raise ValueError("over: " + named(name, value) + f": {limit}")
 
 
 def _nuisance(name: str, data: Data) -> Unknown:

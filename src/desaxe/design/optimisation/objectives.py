@@ -9,10 +9,10 @@ from ...evaluation.reductions.own_measure import OwnMeasure
 from ...evaluation.under_loads.loaded import loads_of
 from ...mechanism.inputs import INPUTS, Input
 from ...mechanism.keywords import check_inputs
+from ...mechanism.messages import amount, message_of, named
 from ...mechanism.names import LENGTHS
 from ...mechanism.quantity_units import unit_of
 from ...mechanism.read import read
-from ...mechanism.spoken import named, spoken
 from ...support.deadline import Deadline
 from ...support.shown import shown
 from ..measures import Measure, checked, is_named, text_of
@@ -83,14 +83,15 @@ def _pair(name: str, bounds: Any) -> tuple[float, float]:
         first, last = bounds
     except (TypeError, ValueError) as error:
         raise type(error)(
-            f"over: {named(name, bounds)}: expected two finite bounds, the lower one first"
+            "over: " + named(name, bounds) + ": expected two finite bounds, the lower one first"
         ) from None
     try:
         low, high = _number(name, first), _number(name, last)
     except (TypeError, ValueError) as error:
-        raise type(error)(f"over: {named(name, bounds)}: expected two finite bounds ({error})") from None
+        why = ": expected two finite bounds (" + message_of(error) + ")"
+        raise type(error)("over: " + named(name, bounds) + why) from None
     if not low < high:
-        raise ValueError(f"over: {named(name, (low, high), 'g')}: the lower bound first, and smaller")
+        raise ValueError("over: " + named(name, (low, high), "g") + ": the lower bound first, and smaller")
     return low, high
 
 
@@ -108,13 +109,13 @@ def limits_of(keep: Mapping[Any, Any]) -> list[Limit]:
         measure = checked(key)
         pair = bounds if isinstance(bounds, (tuple, list)) else (bounds, bounds)
         if len(pair) != 2:
-            got = spoken(measure, bounds)
-            raise ValueError(f"keep: {text_of(measure)} = {got}: expected a pair (low, high) or a number")
+            ends = f"keep: {text_of(measure)} = " + amount(measure, bounds)
+            raise ValueError(ends + ": expected a pair (low, high) or a number")
         low, high = (None if end is None else _in_si(measure, end) for end in pair)
         if low is not None and high is not None and low >= high:
             if low > high:
-                both = spoken(measure, (low, high), "g")
-                raise ValueError(f"keep: {text_of(measure)} = {both}: the lower bound first")
+                ends = f"keep: {text_of(measure)} = " + amount(measure, (low, high), "g")
+                raise ValueError(ends + ": the lower bound first")
             limits.append(Limit(key, measure, 1.0, low, EQUAL))
             continue
         if low is not None:

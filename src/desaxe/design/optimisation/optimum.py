@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from ...mechanism.inputs import INPUTS
+from ...mechanism.messages import Message, amount, listed
 from ...mechanism.names import LENGTHS
 from ...mechanism.quantity_units import slopes_of, unit_of, units_by_name
-from ...mechanism.spoken import spoken
 from ...mechanism.status import OptimizeStatus
 from ..averages import AVERAGES
 from ..measures import Measure, checked, text_of
@@ -95,23 +95,23 @@ def _message(
     where = _where(design)
     limit = "margin = BC - AB - |ec| = 0"
     if status == NONE:
-        return f"no design in over= keeps all limits: {_missed(found, search)} at the nearest, {where}"
+        return "no design in over= keeps all limits: " + _missed(found, search) + " at the nearest, " + where
     if status == NO_VALUE:
         return f"{what} has no finite value at any of the {len(search.places)} designs that were looked at"
     if status == UNBOUNDED:
         told = f"no optimum: {what} grows without bound towards the limit of turning, {limit}, as near "
-        keep = f"; keep a margin, such as keep={{'margin': ('{_number('margin', 0.005)}', None)}}"
+        keep = "; keep a margin, such as keep={'margin': ('" + _number("margin", 0.005) + "', None)}"
         return told + where + keep
     if status == EDGE:
         told = f"the best is at the limit of turning itself, {limit}: {what} is bounded there, near "
         return told + where
     if status == UNSURE:
         unsure = f", where the optimality conditions hold to {found.residual:.1g} only: more starts= may help"
-        return f"the search ended at {where}{unsure}"
+        return "the search ended at " + where + unsure
     names = {key: key if key in INPUTS else text_of(checked(key)) for key in active}
     held = ", ".join(f"{names[key]} ({side})" for key, side in active.items())
     rest = f", held back by {held}" if held else _inside(space, found.z)
-    return f"optimum at {where}{_kink(goal, found)}{rest}{_left_out(what, search)}"
+    return "optimum at " + where + f"{_kink(goal, found)}{rest}{_left_out(what, search)}"
 
 
 def _kink(goal: Goal, found: Candidate) -> str:
@@ -142,8 +142,8 @@ def _inside(space: Space, z: Any) -> str:
     return f", on the bound of {', '.join(touched)}, which does not hold it back"
 
 
-def _number(name: Any, value: float, form: str = ".3g") -> str:
-    return spoken(name, value, form, says_unit=True)
+def _number(name: Any, value: float, form: str = ".3g") -> Message:
+    return amount(name, value, form, says_unit=True)
 
 
 def none_turns(space: Space, limits: Sequence[Limit]) -> dict[str, Any] | None:
@@ -165,24 +165,24 @@ def none_turns(space: Space, limits: Sequence[Limit]) -> dict[str, Any] | None:
     keys = [*(limit.key for limit in limits), *space.names]
     return {
         **design, "value": np.nan, "active": {}, "multipliers": dict.fromkeys(keys, np.nan), "status": NONE,
-        "message": f"no design in over= keeps all limits: {missed} at the nearest, {_where(design)}",
+        "message": "no design in over= keeps all limits: " + missed + " at the nearest, " + _where(design),
         "residual": 0.0,
     }  # fmt: skip
 
 
-def _where(design: Mapping[str, float]) -> str:
-    return ", ".join(f"{name} = {_number(name, value, '.9g')}" for name, value in design.items())
+def _where(design: Mapping[str, float]) -> Message:
+    return listed([f"{name} = " + _number(name, value, ".9g") for name, value in design.items()])
 
 
-def _misses(measure: Measure, side: str, short: float) -> str:
-    return f"{text_of(measure)} misses its {side} limit by {_number(measure, short)}"
+def _misses(measure: Measure, side: str, short: float) -> Message:
+    return f"{text_of(measure)} misses its {side} limit by " + _number(measure, short)
 
 
-def _misses_turning(short: float) -> str:
-    return f"margin = BC - AB - |ec| misses 0, from which on the crank turns, by {_number('margin', short)}"
+def _misses_turning(short: float) -> Message:
+    return "margin = BC - AB - |ec| misses 0, from which on the crank turns, by " + _number("margin", short)
 
 
-def _missed(found: Candidate, search: LocalSearch) -> str:
+def _missed(found: Candidate, search: LocalSearch) -> Message:
     """The most violated limit, and the violation, as text."""
     value = search.scaled(found.z)[0][search.count :]
     wrong = np.where(search.equal, np.abs(value), -value)
@@ -194,7 +194,7 @@ def _missed(found: Candidate, search: LocalSearch) -> str:
         if limit.key is None and short[k] > limit.bound:  # implied, and kept with a little to spare
             return _misses_turning(float(short[k] - limit.bound))
     least = min(limit.bound for limit in search.limits if limit.key is None)
-    return f"the margin, above 0, is less than {_number('margin', least)}"
+    return "the margin, above 0, is less than " + _number("margin", least)
 
 
 def units_of_optimum(goals: list[Goal], found: Mapping[str, Any]) -> dict[Any, Any]:

@@ -13,7 +13,7 @@ from ...loads.load import Load, OverTheta
 from ...loads.motors import Motor
 from ...loads.resolve import as_load
 from ...mechanism.inputs import Input
-from ...mechanism.spoken import named
+from ...mechanism.messages import listed, message_of, named
 from ...support.forks import IMPORTS
 
 Array = NDArray[Any]
@@ -141,8 +141,8 @@ class OfFunction(TorqueSource):
         bad = ~np.isfinite(found) & np.isfinite(omega)
         if bad.any():
             where = named("omega", omega[bad].flat[0], "g")
-            what = f"torque: {self.name} gave {found[bad].flat[0]} at {where}"
-            raise ValueError(f"{what}: it must be a finite number in N*m")
+            what = f"torque: {self.name} gave {found[bad].flat[0]} at " + where
+            raise ValueError(what + ": it must be a finite number in N*m")
         return np.asarray(found)
 
     def _one(self, row: tuple[float, ...]) -> float:
@@ -151,10 +151,9 @@ class OfFunction(TorqueSource):
         try:
             return float(self.function(*row))
         except (TypeError, ValueError) as error:
-            told = ", ".join(
-                f"{named(role, value, 'g')}" for role, value in zip(self.roles, row, strict=True)
-            )
-            raise type(error)(f"torque: {self.name} failed at {told}: {error}") from error
+            where = listed([named(role, value, "g") for role, value in zip(self.roles, row, strict=True)])
+            failed = f"torque: {self.name} failed at " + where + ": " + message_of(error)
+            raise type(error)(failed) from error
 
     def both(self, theta: Array, omega: Array, row: Mapping[str, Any]) -> tuple[Array, Array]:
         """The function's torque; its slope from eight values around the speed."""

@@ -11,10 +11,9 @@ from ...evaluation.under_loads.loaded import loads_of
 from ...loads.angles import turns_of
 from ...mechanism.inputs import INPUTS, Input
 from ...mechanism.keywords import check_inputs, with_known_keywords
+from ...mechanism.messages import named
 from ...mechanism.names import LENGTHS
 from ...mechanism.read import read_array
-from ...mechanism.slips import warn_of_slips
-from ...mechanism.spoken import UNITS, named
 from ...runtime.request import as_number, check_common
 from ...support.shown import shown
 from .designs import DesignRows
@@ -98,7 +97,7 @@ def _row(row: Input, value: Any) -> Array:
     with np.errstate(invalid="ignore"):
         wrong = ~np.isfinite(array) | (array < (row.least or 0.0))
     if wrong.any():
-        raise ValueError(f"{named(row.name, array[wrong].item(0))}: it must be {row.limit}")
+        raise ValueError(named(row.name, array[wrong].item(0)) + f": it must be {row.limit}")
     return array
 
 
@@ -113,8 +112,6 @@ def _designs(
     given = {name: value for name, value in inputs.items() if value is not None}
     check_inputs("steady", given, [*OWN, *(n for n in INPUTS if n != "theta")])
     check_common(given, branch)
-    if UNITS.get() is None:  # a machine and a scene have told of slips when they were made
-        warn_of_slips(given, stacklevel=5, inputs=given)
     numbers, loads = loads_of(given)
     if np.any(np.asarray(numbers.pop("alpha", 0.0), float)):
         raise ValueError("alpha: steady finds the speed over a turn itself; leave it out")
@@ -128,10 +125,9 @@ def _designs(
     J = _row(FLYWHEEL, flywheel)
     extra = {"flywheel_inertia": J}
     if fluctuation is not None and J.any():
-        raise ValueError(
-            f"{named('flywheel_inertia', flywheel)}, fluctuation = {shown(fluctuation)}: give one of them; "
-            "a flywheel that stays is a part of I_crank"
-        )
+        rule = "give one of them; a flywheel that stays is a part of I_crank"
+        wheel = named("flywheel_inertia", flywheel)
+        raise ValueError(wheel + f", fluctuation = {shown(fluctuation)}: {rule}")
     if fluctuation is not None:
         extra["fluctuation"] = read_array(FLUCTUATION, fluctuation)
     if speed is not None and source.way is None:

@@ -20,10 +20,10 @@ from math import asin, cos, inf, isclose, pi, sin, sqrt
 from typing import Any
 
 from ...mechanism.inputs import INPUTS, TINY, Input
+from ...mechanism.messages import amount
 from ...mechanism.names import LENGTHS
 from ...mechanism.quantity_units import units_of
 from ...mechanism.read import read
-from ...mechanism.spoken import spoken
 from ...runtime.request import with_known_inputs
 from ...support.answer import Answer
 from ...support.roots import root
@@ -102,7 +102,8 @@ def _wish(name: str, value: Any) -> float:
     row = WANTED.get(name) or INPUTS[name]
     number = read(row._replace(least=TINY, limit="finite and more than 0"), value, "synthesize")
     if name == "max_pressure_angle" and number > pi / 2:
-        raise ValueError(f"{name} = {spoken(name, number, 'g', True)}: it is at most pi/2, a right angle")
+        angle = f"{name} = " + amount(name, number, "g", says_unit=True)
+        raise ValueError(angle + ": it is at most pi/2, a right angle")
     return number
 
 
@@ -110,9 +111,10 @@ def _result(third: str, value: float, slow_stroke: int, answer: Fitting) -> Answ
     count = len(answer.designs)
     told = answer.why or f"{count} design{'s' if count != 1 else ''}"
     if not answer.why and not count:
-        wish, low, high = (spoken(third, x, ".6g", True) for x in (value, answer.low, answer.high))
-        ends = f"from {low} on" if answer.high == inf else f"from {low.partition(' ')[0]} to {high}"
-        told = f"none: {third} = {wish}, designs of this stroke and time ratio have it {ends}"
+        wish, high = (amount(third, x, ".6g", says_unit=True) for x in (value, answer.high))
+        low = amount(third, answer.low, ".6g", says_unit=answer.high == inf)
+        ends = low + " on" if answer.high == inf else low + " to " + high
+        told = f"none: {third} = " + wish + ", designs of this stroke and time ratio have it from " + ends
     solutions = sorted(answer.designs, key=lambda design: design["BC"])
     found = {
         "solutions": [{**design, "ec": slow_stroke * design["ec"]} for design in solutions],

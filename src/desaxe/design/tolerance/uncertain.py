@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...mechanism.inputs import INPUTS
+from ...mechanism.messages import amount
 from ...mechanism.ranges import Between, PlusMinus, middle_of, refuse_bare_pair
 from ...mechanism.read import in_si
 from ...mechanism.read import read as read_number
-from ...mechanism.spoken import spoken
 from ...units.system import Conversion
 from ...units.text import PLUS_MINUS, with_unit_of
 
@@ -65,9 +65,8 @@ def read(name: str, value: Any, distribution: str, sigmas: float) -> float | Ine
         return _number(name, value)
     nominal, tolerance = pair
     if not 0.0 <= tolerance < inf:
-        raise ValueError(
-            f"{name}: a tolerance of {spoken(name, tolerance, 'g')}; it must be finite and at least 0"
-        )
+        text = f"{name}: a tolerance of " + amount(name, tolerance, "g")
+        raise ValueError(text + "; it must be finite and at least 0")
     if tolerance == 0.0:
         return nominal
     if distribution == "uniform":

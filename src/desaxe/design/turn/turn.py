@@ -11,9 +11,9 @@ from ...loads.angles import turns_of
 from ...loads.resolve import VARIABLE
 from ...mechanism.inputs import INPUTS
 from ...mechanism.keywords import check_inputs
+from ...mechanism.messages import amount, named
 from ...mechanism.names import LENGTHS
 from ...mechanism.read import read
-from ...mechanism.spoken import named, spoken
 from ...mechanism.status import PointStatus
 from ...runtime.request import as_number, check_common, is_steady, request
 from ...support.computed import computed_once
@@ -87,8 +87,8 @@ class Turn(Cycle):
         if bad.any():
             codes, k = status[bad], int(np.argmax(bad))
             why = JAMS if JAMS in codes else int(codes[0]) or 4
-            angle = spoken("theta", theta[k], ".6g")
-            told = f"{', '.join(names)}: no value at theta = {angle} (status {status[k]})"
+            angle = named("theta", theta[k], ".6g")
+            told = f"{', '.join(names)}: no value at " + angle + f" (status {status[k]})"
             raise NoCycleError(told, why)
         return found
 
@@ -112,8 +112,8 @@ def one_turn(caller: str, inputs: Mapping[str, Any], branch: int) -> Turn:
 
 def cannot_turn(caller: str, turn: Turn) -> ValueError:
     """The error for a design whose crank cannot turn fully."""
-    margin = spoken("margin", turn.margin, "g", says_unit=True)
-    return ValueError(f"{caller}: the crank cannot turn fully, margin = {margin} is less than 0")
+    margin = amount("margin", turn.margin, "g", says_unit=True)
+    return ValueError(f"{caller}: the crank cannot turn fully, margin = " + margin + " is less than 0")
 
 
 def _number(caller: str, name: str, value: Any) -> float:
@@ -127,5 +127,5 @@ def check_range(caller: str, name: str, number: float) -> float:
     """The number; ValueError beyond WIDEST."""
     if name != "theta" and number != 0.0 and not 1.0 / WIDEST <= abs(number) <= WIDEST:
         limit = f"{caller} takes 0 and magnitudes from {1.0 / WIDEST:g} to {WIDEST:g}"
-        raise ValueError(f"{named(name, number, 'g')}: {limit}")
+        raise ValueError(named(name, number, "g") + f": {limit}")
     return number

@@ -14,8 +14,8 @@ from ...loads.pieces import Place
 from ...loads.resolve import VARIABLE, Forces, LoadPlan, plan_of, split, way_of
 from ...loads.tabulated import over_theta
 from ...mechanism.closed import TURN
+from ...mechanism.messages import amount, message_of
 from ...mechanism.names import LENGTHS, STATUS
-from ...mechanism.spoken import spoken
 from ...runtime.request import as_number, check_common, several
 from ...support.forks import IMPORTS
 from ..arrays import as_array, outputs_for
@@ -198,12 +198,12 @@ def labelled_load(name: str, array: Any, theta: Any = None) -> Load:
         raise ValueError(f"{name}: {y.size} values over theta, which has {x.size}")
     try:
         if x.size and x[-1] - x[0] < TURN - GAP * np.diff(x).max(initial=0.0):
-            first, last = (spoken("theta", end, "g", says_unit=True) for end in (x[0], x[-1]))
-            raise ValueError(f"its angles go from {first} to {last}, which is not a whole turn")
+            first, last = (amount("theta", end, "g", says_unit=True) for end in (x[0], x[-1]))
+            raise ValueError("its angles go from " + first + " to " + last + ", which is not a whole turn")
         return over_theta(x, y)
     except ValueError as error:
         if theta is None or not np.array_equal(x, as_array("theta", theta, ("theta",), (name,))):
-            raise ValueError(f"{name}: {error}") from None
+            raise ValueError(f"{name}: " + message_of(error)) from None
         return FunctionOverTheta(SampledLoad(x, y).at)
 
 

@@ -17,6 +17,7 @@ from ...loads.pieces import Place, ahead, pieces_at
 from ...loads.resolve import way_of
 from ...loads.stroke import OverStroke
 from ...loads.table import Table
+from ...mechanism.messages import message_of
 from ...mechanism.names import LENGTHS, sensitivity
 from ...runtime.request import several
 from ..quality import ROUNDED_ONCE, Quality, conditions_of, digits_of, evaluate_quality
@@ -57,7 +58,7 @@ def evaluate_loaded_quality(
     try:
         slopes = evaluate_loaded([*totals.values()], given, branch, accuracy, threads, None)
     except ValueError as error:
-        raise ValueError(f"quality of {names}: not available under a load; {error}") from None
+        raise ValueError(f"quality of {names}: not available under a load; " + message_of(error)) from None
     partial = values([*by_force.values()], held, branch, threads=threads)
     bound = np.asarray(found.error_bound)
     for name, slope in by_force.items():

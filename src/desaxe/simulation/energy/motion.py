@@ -100,7 +100,7 @@ def motion_of(
     events = _events(path, angles_of(model, until), path.t if path.status else t_end)
     long = len(path.pieces) > BRIEF
     known = None if asked.size == 1 or long else Instants(asked, found)
-    message = f"reached t_end = {time_of(t_end)}"
+    message = "reached t_end = " + time_of(t_end)
     motion = MotionOverAngle(designs, rtol, t_end, long, known, t_end, DONE, message, [])
     last = next((k for k, (_, mark) in enumerate(events) if mark.status == DONE), None)
     if last is not None:

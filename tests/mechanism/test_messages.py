@@ -1,14 +1,17 @@
-"""Numbers in messages are in the units of the machine or scene whose call it is."""
+"""Messages know their quantities: errors and answers of a machine or scene are in its units."""
 
+import ast
+import pickle
 import re
 import threading
 import warnings
+from pathlib import Path
 
 import pytest
 
 import desaxe as dx
+from desaxe.mechanism.messages import amount, errors_in, listed, named
 from desaxe.mechanism.quantity_units import UnitSystem
-from desaxe.mechanism.spoken import named, speaking, spoken
 
 UNITS = UnitSystem.read("mm, deg, rpm, kN")
 PRESS = dx.Machine(units="mm, deg, rpm, kN", ec=10, AB=50, BC=200, omega0=300, m_slider=4, I_crank=0.1)
@@ -16,19 +19,35 @@ PEAK = {"minimize": ("absmax", "a_C")}
 
 
 def test_numbers_pairs_and_what_is_no_number():
-    assert spoken("ec", 0.03) == "0.03"
-    assert spoken("ec", 0.03, "g", says_unit=True) == "0.03 m"
-    with speaking(UNITS):
-        assert named("ec", 0.03) == "ec = 30 mm"
-        assert spoken("AB", (0.03, -0.01), "g") == "(30, -10) mm"
-        assert spoken("omega_mean", 31.41592653589793, ".6g") == "300 rpm"
-        assert spoken("T_in", 2.0, "g", says_unit=True) == "2 N m"
-        assert spoken("ec", "12 mm") == "'12 mm'"
-        other: list[str] = []
-        thread = threading.Thread(target=lambda: other.append(spoken("ec", 0.03)))
-        thread.start()
-        thread.join()
-    assert [*other, spoken("ec", 0.03)] == ["0.03", "0.03"]
+    assert [amount("ec", 0.03), amount("ec", 0.03, "g", says_unit=True)] == ["0.03", "0.03 m"]
+    texts = {
+        "ec = 30 mm": named("ec", 0.03),
+        "(30, -10) mm": amount("AB", (0.03, -0.01), "g"),
+        "300 rpm": amount("omega_mean", 31.41592653589793, ".6g"),
+        "2 N m": amount("T_in", 2.0, "g", says_unit=True),
+        "'12 mm'": amount("ec", "12 mm"),
+        "AB = 30 mm or -10 mm; too": listed([named("AB", 0.03), amount("AB", -0.01)], " or ") + "; too",
+        "over: 30 mm": "over" + ("BC: " + amount("AB", 0.03)).removeprefix("BC"),
+    }
+    assert [message.in_units(UNITS) for message in texts.values()] == [*texts]
+    copied = pickle.loads(pickle.dumps(named("ec", 0.03)))
+    assert (copied, copied.in_units(UNITS)) == ("ec = 0.03", "ec = 30 mm")
+
+
+def test_an_error_is_in_the_units_of_the_innermost_border():
+    with pytest.raises(ValueError, match="AB = 30 mm"), errors_in(UnitSystem.read("m")), errors_in(UNITS):
+        raise ValueError(named("AB", 0.03))
+
+
+def test_no_message_is_put_into_an_f_string():
+    """Of one in an f-string the text in SI units alone would be left."""
+    makers, wrong = {"amount", "named", "listed", "message_of", "time_of", "angle_of"}, []
+    for path in Path(dx.__file__).parent.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            inside = ast.walk(node) if isinstance(node, ast.JoinedStr) else ()
+            calls = [part.func for part in inside if isinstance(part, ast.Call)]
+            wrong += [f"{path}:{f.lineno}" for f in calls if isinstance(f, ast.Name) and f.id in makers]
+    assert not wrong
 
 
 ERRORS = {
