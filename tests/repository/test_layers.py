@@ -87,7 +87,7 @@ FLOORS = {
     "design": 8,
     "scenes": 9,
     "machine": 10,
-    "cli": 10,
+    "cli": 11,
 }
 CLOSED = {
     "compiler": {"support"},

@@ -18,13 +18,14 @@ from ..support.extras import MissingExtraError, explained
 from ..support.interrupts import is_at_work
 from ..support.shown import printable
 from .cache import add_cache
+from .calls import CALLS, add_calls
 from .checks import add_derive, add_doctor, derive
 from .fit import add_fit
 from .parser import SIGNS, Parser, Version
 from .point import add_point
 from .scene import add_compile, add_explain, add_explore, add_run, add_scene
 from .sweep import add_sweep
-from .words import UsageError
+from .words import UsageError, options_first
 
 LONGEST = 2_000  # characters of an error
 INTERRUPTED, TERMINATED = 130, 143  # as a shell reports them
@@ -36,6 +37,7 @@ class Terminated(KeyboardInterrupt):
 
 COMMANDS = (
     add_point,
+    add_calls,
     add_scene,
     add_run,
     add_sweep,
@@ -106,8 +108,8 @@ def _leave(code: int) -> int:
 def _run(words: list[str]) -> int:
     if words[:1] == ["derive"]:  # its options are its own
         return derive(words[1:])
-    if words[:1] == ["point"]:  # options may stand anywhere among its words
-        words = ["point", *sorted(words[1:], key=lambda word: not word.startswith("--"))]
+    if words and (words[0] == "point" or words[0] in CALLS):
+        words = [words[0], *options_first(words[1:])]
     parser = _parser()
     options = parser.parse_args(words)
     run: Callable[[argparse.Namespace], int] | None = getattr(options, "run", None)
@@ -147,7 +149,7 @@ def _parser() -> argparse.ArgumentParser:
         prog="desaxe",
         description="Offset slider-crank: kinematics with exact sensitivities.",
         epilog=f"{SIGNS}\n\n`desaxe COMMAND --help` explains a command and gives examples.",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        formatter_class=lambda prog: argparse.RawDescriptionHelpFormatter(prog, max_help_position=20),
     )
     parser.add_argument("--version", action=Version, help="print the version and leave")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)

@@ -2,13 +2,27 @@
 
 import argparse
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from ..mechanism.quantity_units import UnitSystem, si_unit
+from .answers import plain
 from .parser import add_command
 from .words import UsageError
+
+# What the JSON of a fit has.
+KEPT = (
+    "value",
+    "std_error",
+    "interval",
+    "names",
+    "unidentified",
+    "at_bound",
+    "chi_square",
+    "status",
+    "message",
+)
 
 
 def add_fit(commands: Any) -> None:
@@ -66,7 +80,8 @@ def _fit(options: argparse.Namespace) -> int:
     data = columns_of(options.data, known.units)
     found = fit(data, over, sigma, options.nuisance, options.loss, branch=known.branch, **fixed)
     told = in_units(found, whole.shown_in)  # JSON is in SI units
-    print(json.dumps(_plain(found), indent=2) if options.json else told.report(), flush=True)
+    kept = {key: plain(found[key]) for key in KEPT}
+    print(json.dumps(kept, indent=2) if options.json else told.report(), flush=True)
     if options.picture:
         from ..plot.save import save
 
@@ -103,27 +118,3 @@ def _in_si(name: str, text: str, units: UnitSystem) -> Any:
 
     conversion = units.find(name)
     return text if conversion is None else in_si(Input(name, si_unit(name), ""), text, units)
-
-
-def _plain(found: Any) -> dict[str, Any]:
-    """The numbers of a fit for JSON, with null in place of infinity."""
-    kept: Sequence[str] = (
-        "value",
-        "std_error",
-        "interval",
-        "names",
-        "unidentified",
-        "at_bound",
-        "chi_square",
-        "status",
-        "message",
-    )
-    return {key: _finite(found[key]) for key in kept}
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _finite(one) for key, one in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_finite(one) for one in value]
-    return None if isinstance(value, float) and value - value != 0.0 else value

@@ -56,8 +56,9 @@ def add_command(
     what: str,
     run: Callable[[argparse.Namespace], int],
     facts: Callable[[], Mapping[str, str | Sequence[str]]] = dict,
+    text: Callable[[], str] | None = None,
 ) -> Any:
-    """Add a sub-command with its one-line help, the longer one of `help/NAME.txt` with these facts."""
+    """Add a sub-command with its one-line help, and `text` or that of `help/NAME.txt` with these facts."""
     parser = commands.add_parser(
         name,
         help=what,
@@ -65,5 +66,5 @@ def add_command(
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.set_defaults(run=run)
-    parser.more = lambda: filled(file_text(__package__, "help", f"{name}.txt"), **facts())
+    parser.more = text or (lambda: filled(file_text(__package__, "help", f"{name}.txt"), **facts()))
     return parser

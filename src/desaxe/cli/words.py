@@ -11,12 +11,57 @@ class UsageError(Exception):
     """The command line cannot be understood."""
 
 
+VALUED = ("--machine", "--units", "-o")  # options of a call whose value is the next word
+
+
+def options_first(words: Sequence[str]) -> list[str]:
+    """The words of a call with its options, which may stand anywhere, ahead of names and inputs."""
+    options: list[str] = []
+    others: list[str] = []
+    for before, word in pairwise(["", *words]):
+        (options if word.startswith("--") or word == "-o" or before in VALUED else others).append(word)
+    return [*options, *others]
+
+
 def names_and_inputs(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
-    """Split arguments into names and inputs; an argument with = is an input."""
+    """Split arguments into names and inputs of a point; an argument with = is an input."""
     from ..mechanism.inputs import INPUTS
 
-    names: list[str] = []
+    names, pairs = _parted(words)
     inputs: dict[str, Any] = {}
+    for key, value in pairs.items():
+        word = f"{key}={value}"
+        if key == "branch":
+            inputs[key] = _branch(value)
+        elif key not in INPUTS:
+            raise UsageError(f"{word}: no input is called {key!r}, {_inputs_near(key)}")
+        else:
+            inputs[key] = _quantity(word, value)
+    if not names:
+        raise UsageError("which quantity? give a name such as a_C (desaxe point --list shows all)")
+    return names, inputs
+
+
+def arguments_of(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
+    """Split arguments into names and arguments of a call; `over.ec=LOW:HIGH` is an entry of `over`."""
+    names, pairs = _parted(words)
+    arguments: dict[str, Any] = {}
+    for key, text in pairs.items():
+        head, dot, entry = key.partition(".")
+        value = _value(f"{key}={text}", text)
+        if not dot and head not in arguments:
+            arguments[head] = value
+        elif dot and isinstance(arguments.setdefault(head, {}), dict):
+            arguments[head][_name(entry)] = value
+        else:
+            raise UsageError(f"{key}={text}: {head} has a value already")
+    return names, arguments
+
+
+def _parted(words: Sequence[str]) -> tuple[list[str], dict[str, str]]:
+    """Names, each once, and the texts of what has a value."""
+    names: list[str] = []
+    pairs: dict[str, str] = {}
     for before, word in pairwise(["", *words]):
         key, equals, value = (part.strip() for part in word.partition("="))
         if not equals:
@@ -24,17 +69,74 @@ def names_and_inputs(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
             names += [name for name in word.split(",") if name]
         elif not (key and value):
             raise UsageError(f"{word}: an input and its value are one word, such as theta=60deg")
-        elif key == "branch":
-            inputs[key] = _branch(value)
-        elif key not in INPUTS:
-            raise UsageError(f"{word}: no input is called {key!r}, {_inputs_near(key)}")
-        elif key in inputs:
+        elif key in pairs:
             raise UsageError(f"{word}: {key} is given twice")
         else:
-            inputs[key] = _quantity(word, value)
-    if not names:
-        raise UsageError("which quantity? give a name such as a_C (desaxe point --list shows all)")
-    return list(dict.fromkeys(names)), inputs
+            pairs[key] = value
+    return list(dict.fromkeys(names)), pairs
+
+
+def _value(word: str, text: str) -> Any:
+    """A number, a text, a list with commas, a pair LOW:HIGH, or the numbers of FIRST:LAST:COUNT."""
+    if "," in text:
+        return [_value(word, part) for part in text.split(",") if part]
+    parts = text.split(":")
+    if len(parts) == 3:
+        return _range(word, *parts)
+    tolerance = _toleranced(text)
+    if tolerance is not None:
+        return tolerance
+    return tuple(map(_single, parts)) if len(parts) == 2 else _single(text)
+
+
+def _toleranced(text: str) -> Any:
+    """A value with its tolerance, of `10 mm +- 0.1 mm`; None for any other text."""
+    from ..mechanism.ranges import plus_minus
+    from ..units.text import PLUS_MINUS
+
+    parts = [part.strip() for part in PLUS_MINUS.split(text)]
+    return plus_minus(*map(_single, parts)) if len(parts) == 2 else None
+
+
+def _single(text: str) -> Any:
+    """True, False, a whole number, or the text as it is: of a quantity, or a word such as `kind=max`."""
+    if text in ("true", "false"):
+        return text == "true"
+    try:
+        return int(text)
+    except ValueError:
+        return _float(text)
+
+
+def _float(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _name(entry: str) -> Any:
+    """The key of an entry: a name, or a pair such as `absmax:a_C`."""
+    parts = entry.split(":")
+    return tuple(parts) if len(parts) > 1 else entry
+
+
+def _range(word: str, first: str, last: str, count: str) -> list[Any]:
+    """Evenly spaced numbers, both ends included, with the unit that both ends have."""
+    from fractions import Fraction
+
+    from ..scenes.reading.spread import spread
+    from ..units.text import quantity_text
+
+    try:
+        (start, _, unit), (stop, _, other) = (quantity_text(end).partition(" ") for end in (first, last))
+        if (unit and other and unit != other) or not int(count) > 1:
+            raise ValueError
+        values = spread(Fraction(start), Fraction(stop), int(count) - 1)
+    except ValueError:
+        raise UsageError(f"{word}: expected FIRST:LAST:COUNT, such as 0deg:360deg:73") from None
+    unit = unit or other
+    return [f"{value!r} {unit}" if unit else value for value in values]
 
 
 def _inputs_near(word: str) -> str:

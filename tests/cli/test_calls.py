@@ -1,0 +1,132 @@
+"""`desaxe CALL`: the words of a command line ask what the call of Python asks."""
+
+import csv
+import json
+import shlex
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import desaxe as dx
+from desaxe.cli.calls import CALLS
+from desaxe.cli.command import main
+
+LENGTHS = "ec=10mm AB=125mm BC=350mm"
+MACHINE = dx.Machine(ec=0.01, AB=0.125, BC=0.35, omega0=157.0, m_slider=1.0)
+WORDS = f"{LENGTHS} omega0=157 m_slider=1kg"
+# The words of a command, and the same call in Python.
+SAME = {
+    "evaluate a_C,V_C theta=0deg:90deg:4": lambda m: m.evaluate(
+        ["a_C", "V_C"], theta=np.radians([0.0, 30.0, 60.0, 90.0])
+    ),
+    "evaluate a_C theta=1 branch=-1": lambda m: dx.evaluate(["a_C"], theta=1.0, **m.replace(branch=-1)),
+    "grid a_C theta=0,1,2 reduce.theta=absmax": lambda m: m.grid(
+        ["a_C"], theta=[0.0, 1.0, 2.0], reduce={"theta": "absmax"}
+    ),
+    "peak T_in kind=max theta=0:180deg": lambda m: m.peak("T_in", kind="max", theta=(0.0, np.pi)),
+    "inverse Y=400mm": lambda m: m.inverse(Y=0.4),
+    "harmonics T_in orders=4": lambda m: m.harmonics("T_in", orders=4),
+    "drive fluctuation=0.05": lambda m: m.drive(fluctuation=0.05),
+    "tolerance a_C theta=1 'ec=10 mm +- 0.1 mm' samples=1000": lambda m: m.tolerance(
+        "a_C", theta=1.0, ec="10 mm +- 0.1 mm", samples=1000
+    ),
+    "enclose V_C theta=1 ec=9.9mm:10.1mm": lambda m: m.enclose(
+        "V_C", theta=1.0, ec=dx.between("9.9 mm", "10.1 mm")
+    ),
+    "optimize minimize=absmax:a_C over.BC=300mm:400mm keep.stroke=250mm:260mm": lambda m: m.optimize(
+        minimize=("absmax", "a_C"), over={"BC": (0.3, 0.4)}, keep={"stroke": (0.25, 0.26)}
+    ),
+    "simulate torque=20 t_end=0.1s I_crank=0.1": lambda m: m.simulate(torque=20.0, t_end=0.1, I_crank=0.1),
+}
+
+
+def numbers(value):
+    """The numbers of a nested answer, of whatever types."""
+    if isinstance(value, dict):
+        return [n for key, part in value.items() if key != "units" for n in numbers(part)]
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [n for part in value for n in numbers(part)]
+    return [float(value)] if isinstance(value, (int, float)) and not isinstance(value, bool) else []
+
+
+@pytest.mark.parametrize("line", SAME)
+def test_the_numbers_are_those_of_the_call(line, capsys):
+    words = shlex.split(line)
+    given = {word.partition("=")[0] for word in words}
+    machine = [word for word in WORDS.split() if word.partition("=")[0] not in given]
+    assert main([*words, *machine, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    answer = SAME[line](MACHINE)
+    if isinstance(answer, xr.Dataset):
+        answer = {str(name): answer[name].values for name in answer.variables}
+        found = {name: found[name] for name in answer}
+    expected = numbers(dict(answer))
+    assert expected
+    assert numbers(found) == pytest.approx(expected, rel=1e-12, abs=1e-12, nan_ok=True)
+
+
+@pytest.mark.parametrize("call", [call for call in CALLS if call != "steady"])
+def test_the_example_of_its_help_runs(call, capsys):
+    _, example = CALLS[call]
+    assert main([call, *shlex.split(example)]) == 0
+    assert capsys.readouterr().out.strip()
+
+
+def test_a_scene_brings_machine_motor_and_units(tmp_path, capsys):
+    scene = tmp_path / "press.toml"
+    motor = "torque = { kloss = { breakdown_torque = 40, breakdown_slip = 0.15, synchronous_speed = 1500 } }"
+    scene.write_text(
+        f'units = "mm, rpm"\n[mechanism]\nAB = 50\nBC = 200\nec = 10\n'
+        f"[masses]\nm_slider = 20\nI_crank = 2\n[loads]\nF_Y = -900\n[steady]\n{motor}\n"
+    )
+    assert main(["steady", "--machine", str(scene), "flywheel_inertia=3", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    machine = dx.Machine.read(scene)
+    answer = machine.steady(torque=dx.kloss(40.0, 0.15, "1500 rpm"), flywheel_inertia=3.0)
+    assert found["omega_mean"] == pytest.approx(answer["omega_mean"], rel=1e-12)
+    assert found["units"]["omega_mean"] == "rpm"
+    assert main(["events", "--machine", str(scene), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["stroke"] == pytest.approx(machine.events()["stroke"])
+
+
+def test_files_and_tables(tmp_path, capsys):
+    words = ["grid", "a_C", "theta=0deg:360deg:5", *LENGTHS.split(), "omega0=157"]
+    assert main([*words, "--csv"]) == 0
+    rows = list(csv.reader(capsys.readouterr().out.splitlines()))
+    assert rows[0][:2] == ["theta [rad]", "a_C [m/s^2]"]
+    assert len(rows) == 6
+    path = tmp_path / "values.nc"
+    assert main([*words, "-o", str(path)]) == 0
+    with xr.open_dataset(path) as stored:
+        assert stored.a_C.values.tolist() == [float(row[1]) for row in rows[1:]]
+    assert main(["events", *LENGTHS.split(), "--csv"]) == 0
+    out = capsys.readouterr().out.splitlines()
+    assert "name,value,unit" in out
+    assert any(line.startswith("gradient.stroke.AB,") for line in out)
+    path.write_text("a measurement")
+    assert main([*words, "-o", str(path)]) == 2
+    assert path.read_text() == "a measurement"
+
+
+COMPLAINTS = {
+    f"peak a_C V_C {LENGTHS}": "desaxe peak takes one quantity, got 2",
+    f"events a_C {LENGTHS}": "a_C: desaxe events takes no quantity",
+    f"peak a_C kind=bogus {LENGTHS} omega0=1": "kind = 'bogus': it is one of absmax, max, min",
+    f"peak a_C knd=max {LENGTHS}": "did you mean kind?",
+    "grid a_C theta=0:b:3 ec=0": "theta=0:b:3: expected FIRST:LAST:COUNT, such as 0deg:360deg:73",
+    "grid a_C ec=0 ec=1": "ec=1: ec is given twice",
+    "optimize over.ec=0:1 over=2": "over=2: over has a value already",
+    "events -o values.txt": "-o values.txt: its name must end in .json, .csv",
+}
+
+
+@pytest.mark.parametrize("line", COMPLAINTS)
+def test_complaints(line, capsys):
+    assert main(line.split()) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert COMPLAINTS[line] in err
+    assert err.count("\n") == 1
