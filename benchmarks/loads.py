@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 import desaxe as dx
-from desaxe.peaks import compiled
 
 from .rig import in_turns
 
@@ -61,17 +60,10 @@ def works(load: Any) -> dict[str, Callable[[], Any]]:
         "grid": grid,
         "grid, reduced": partial(grid, reduce={"theta": ["absmax", "mean"]}),
         "points": partial(dx.evaluate, "T_in", theta=theta, ec=offsets, F_Y=load, **MACHINE),
-        "peaks": partial(_by, "numpy", peak),
-        "peaks, compiled": partial(_by, "compiled", peak),
+        "peaks": peak,
         "tolerance": partial(dx.tolerance, ("absmax", "T_in"), samples=2_000, **scatter, **rest),
         "optimize": partial(dx.optimize, minimize=("absmax", "T_in"), over=over, AB=0.1, **rest),
     }
-
-
-def _by(way: str, run: Callable[[], Any]) -> None:
-    compiled.WAY = way
-    run()
-    compiled.WAY = None
 
 
 def table() -> str:

@@ -1,19 +1,18 @@
 """`python -m benchmarks.peaks`: refined peaks of a_C beside a dense grid of the textbook formula.
 
-8,192 designs on one core, in one process and in turns. NumPy evaluates the textbook formula (SymPy's
+8,192 designs, in one process and in turns. NumPy evaluates the textbook formula (SymPy's
 `lambdify` with common subexpressions) at 720 angles a design, in the blocks of designs that serve it
-best, and takes the largest magnitude: no angle in between, no gradient. `dx.peak` tells the refined
-value, its angle, its exact gradient and status: compiled, and in NumPy, as a call that would take less time
-than compiling does while no machine code is on disk.
+best, and takes the largest magnitude: no angle in between, no gradient. `dx.peak` has the refined value, its
+angle, its exact gradient and status.
 """
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 import desaxe as dx
-from desaxe.peaks import compiled
 
 from .formulas import lambdified
 from .rig import in_turns
@@ -29,29 +28,18 @@ def main() -> None:
     contenders: dict[str, Callable[[], Any]] = {
         f"NumPy, {block} designs at a time": grid_of(designs, block) for block in BLOCKS
     }
-    contenders |= {
-        "dx.peak": peaks_of(designs, "compiled"),
-        "dx.peak, uncompiled": peaks_of(designs, "numpy"),
-    }
+    for threads in (1, 2):
+        contenders[f"dx.peak, threads={threads}"] = partial(
+            dx.peak, "a_C", **designs, omega0=SPEED, threads=threads
+        )
     best = in_turns(contenders, rounds=7)
-    ours = best["dx.peak"]
-    print(f"largest |a_C| of {DESIGNS} designs, one core\n\n| | ns a design | ratio |\n|---|---|---|")
+    ours = best["dx.peak, threads=1"]
+    print(f"largest |a_C| of {DESIGNS} designs, in turns\n\n| | ns a design | ratio |\n|---|---|---|")
     for name, seconds in best.items():
         print(f"| {name} | {seconds / DESIGNS * 1e9:.0f} | {seconds / ours:.1f} |")
-    compiled.WAY = "compiled"
     one = {name: float(column[0]) for name, column in designs.items()}
     alone = in_turns({"one": lambda: dx.peak("a_C", **one, omega0=SPEED)}, rounds=200)["one"]
     print(f"\none design in a call: {alone * 1e6:.0f} us")
-
-
-def peaks_of(designs: Mapping[str, Any], way: str) -> Callable[[], Any]:
-    """The peaks by machine code, or by NumPy, as before there is any."""
-
-    def run() -> Any:
-        compiled.WAY = way
-        return dx.peak("a_C", **designs, omega0=SPEED, threads=1)
-
-    return run
 
 
 def random_designs(count: int) -> dict[str, Any]:

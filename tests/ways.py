@@ -1,4 +1,4 @@
-"""Comparisons of answers of arrays, and the roads that searches of peaks can take."""
+"""Comparisons of answers of arrays."""
 
 import math
 
@@ -9,11 +9,6 @@ import desaxe as dx
 SIZES = {"AB": 0.125, "BC": 0.35, "omega0": 157.0}
 POINT = {"theta": 1.1, "ec": 0.01, **SIZES}
 EPSILON = 2.0**-52
-
-
-def take_way(monkeypatch, name):
-    """Search all peaks by one way: plain, numpy, compiled."""
-    monkeypatch.setattr("desaxe.peaks.compiled.WAY", name)
 
 
 def columns(*shape):

@@ -10,7 +10,7 @@ import pytest
 import desaxe
 from desaxe.compiler.builder import HELPERS, module_text, source_of, with_sources
 from desaxe.compiler.languages.numba.module import FILES
-from desaxe.peaks.compiled import SEARCH
+from desaxe.scenes.export.peaks import SEARCH
 from desaxe.simulation.loops.compiled import FILES as MOTIONS
 
 SOURCE = '''"""Some functions."""

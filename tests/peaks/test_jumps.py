@@ -12,7 +12,6 @@ import desaxe as dx
 from desaxe.loads.exact import Slider
 from tests.effort import cases
 from tests.peaks.pieces import DIGITS, SIGN, Stroke, Turn, closure_of, dead_centres, edges, sides, tops
-from tests.ways import take_way
 
 NAMES = ("T_in", "N_C", "F_B_Y", "F_B_X", "F_A_X", "F_C_Y", "power_in", "F_B", "F_shaking_Y")
 KINDS = ("absmax", "max", "min")
@@ -128,14 +127,7 @@ def check(draw, found):
     assert not alike or any(found["side"] in some for some in alike)
 
 
-@pytest.fixture
-def numpy(monkeypatch):
-    """No kernel for the inputs of each random machine; `test_in_arrays_in_every_way` has some."""
-    take_way(monkeypatch, "numpy")
-
-
 @pytest.mark.sampled
-@pytest.mark.usefixtures("numpy")
 @pytest.mark.parametrize("part", range(4))
 def test_a_peak_is_that_of_constant_forces_on_each_side_of_the_jumps(part):
     for seed in range(part, cases(16, 200, 2000), 4):
@@ -144,7 +136,6 @@ def test_a_peak_is_that_of_constant_forces_on_each_side_of_the_jumps(part):
 
 
 @pytest.mark.thorough
-@pytest.mark.usefixtures("numpy")
 @pytest.mark.parametrize("part", range(4))
 def test_with_friction(part):
     for seed in range(part, cases(0, 24, 1000), 4):
@@ -165,14 +156,7 @@ def in_arrays(seed):
 
 
 def test_in_arrays():
-    in_arrays(0)
-
-
-@pytest.mark.thorough
-@pytest.mark.parametrize("way", ["plain", "numpy", "compiled"])
-def test_in_arrays_in_every_way(way, monkeypatch):
-    take_way(monkeypatch, way)
-    for seed in range(cases(0, 2 if way == "compiled" else 6, 30)):
+    for seed in range(cases(1, 6, 30)):
         in_arrays(seed)
 
 
@@ -195,7 +179,6 @@ def moved(draw, top, parameter, place=position):
 
 
 @pytest.mark.sampled
-@pytest.mark.usefixtures("numpy")
 def test_the_gradient_moves_with_the_jump():
     checked = 0
     for seed in range(cases(7, 200, 1000)):

@@ -6,7 +6,6 @@ import pytest
 import desaxe as dx
 from desaxe.evaluation.values import values
 from desaxe.peaks.loaded import ValuesUnderLoads
-from tests.ways import take_way
 
 MACHINE = {"AB": 0.1, "BC": 0.35, "omega0": 30.0, "m_slider": 2.0, "m_rod": 1.0}
 LOADS = {
@@ -14,11 +13,6 @@ LOADS = {
     "Y": dx.over_Y([0.27, 0.33, 0.42], [0.0, -100.0, -400.0], [0.0, -10.0, -50.0], kind="step"),
     "stroke": dx.over_stroke([0.0, 0.008, 0.1], [-400.0, -100.0, 0.0], kind="linear", dead_centre="inner"),
 }
-
-
-@pytest.fixture(autouse=True)
-def nobody_waits_for_a_compiler(monkeypatch):
-    take_way(monkeypatch, "numpy")
 
 
 @pytest.mark.parametrize("over", LOADS)
@@ -58,7 +52,7 @@ def test_each_design_has_the_peak_that_it_has_alone(over, kind):
 def test_blocks_of_few_designs_change_nothing(monkeypatch):
     ec = np.linspace(-0.05, 0.05, 7)
     whole = dx.peak("T_in", ec=ec, F_Y=LOADS["Y"], **MACHINE)
-    monkeypatch.setattr("desaxe.peaks.loaded.MOST", 250)
+    monkeypatch.setattr("desaxe.peaks.designs.MOST", 250)
     cut = dx.peak("T_in", ec=ec, F_Y=LOADS["Y"], **MACHINE)
     np.testing.assert_allclose(cut["value"], whole["value"], rtol=1e-14)
     np.testing.assert_array_equal(cut["side"], whole["side"])

@@ -16,8 +16,6 @@ RUNS_TEXT = {
     "src/desaxe/runtime/wide_margins.py",
     "src/desaxe/runtime/native/compiled_text.py",
     "src/desaxe/runtime/native_calls.py",
-    "src/desaxe/peaks/by_arrays.py",
-    "src/desaxe/peaks/compiled.py",
     "src/desaxe/compiler/languages/arrays.py",
     "src/desaxe/compiler/languages/python.py",
 }

@@ -24,17 +24,11 @@ from desaxe.scenes.parts.stored import sweep_content
 from desaxe.support.locks import locked
 from desaxe.sweeps.sweep import run_sweep
 from tests.effort import cases
-from tests.ways import take_way
 
 THETA = np.linspace(0.0, 2.0 * np.pi, 40)
 INPUTS = {"theta": THETA, "ec": [-0.05, 0.0, 0.9], "AB": 0.2, "BC": [0.1, 0.5], "omega0": 3.0}
 NAMES = ["V_C", "a_C"]
 CHUNKS = {"theta": 16}
-
-
-@pytest.fixture(autouse=True)
-def _compiled(monkeypatch):
-    take_way(monkeypatch, "compiled")
 
 
 def files(root):

@@ -1,4 +1,4 @@
-"""The peaks of a block of designs of a sweep, by the compiled search."""
+"""The peaks of a block of designs of a sweep."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from ..compiler.passes.guard import BAD_INPUT
 from ..evaluation.arrays import are_good, broadcast_shape
 from ..mechanism.own import using
-from .compiled import compiled_only
 from .designs import Sought, peaks_of_designs, search_of
 from .programs import Search
 
@@ -52,14 +51,13 @@ class PeakBlock(NamedTuple):
         if rows.size:
             found = self._found({name: column[rows] for name, column in flat.items()}, rows.size)
             for name, out in outs.items():
-                out[rows] = found[name][: rows.size]
+                out[rows] = found[name]
         return {name: out.reshape(shape) for name, out in outs.items()}
 
     def _found(self, flat: Mapping[str, Array], size: int) -> dict[str, Array]:
-        """The outputs of two or more designs without invalid inputs: a single one takes another code path."""
-        columns = {name: np.resize(column, max(size, 2)) for name, column in flat.items()}
-        columns |= {name: np.full(max(size, 2), value) for name, value in self.scalars}
-        with using(self.search.form.own), compiled_only():
+        """The outputs of designs without invalid inputs."""
+        columns = {**flat, **{name: np.full(size, value) for name, value in self.scalars}}
+        with using(self.search.form.own):
             found = peaks_of_designs(self.sought, self.search, columns)
         return {**found, **{f"{GRADIENT}{n}": slope for n, slope in found["gradient"].items()}}
 

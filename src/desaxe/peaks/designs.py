@@ -1,8 +1,7 @@
 """Peaks of flat designs: the plan of a request, and the search over all designs."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import nullcontext
-from functools import partial
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -24,21 +23,22 @@ from ..runtime.request import Request, is_steady, request
 from ..runtime.threads import run_parts
 from ..runtime.wide_margins import all_have_wide_margins, have_wide_margins
 from ..support.progress import Portions, progress_bar
-from . import special
-from .compiled import LONGEST_PART, Groups, is_compiled, kernel_for, run
 from .course import course_of
 from .differences import with_slopes
+from .evaluations import evaluations_of
 from .jumps import at_jumps
-from .loaded import ValuesUnderLoads, with_nodes
-from .nodes import Array, classes, coarser, shared_nodes
-from .programs import Search, needs_own, programs_of
-from .special import SearchedDesigns
-from .under import search_under, tables_under, with_own
+from .loaded import Rows, ValuesUnderLoads
+from .nodes import Array, classes, shared_nodes
+from .programs import Search, needs_own
+from .search import search as search_block
+from .special import USABLE, SearchedDesigns, SearchResult, are_special, complete, own_nodes, stays_zero
 
 KINDS = ("absmax", "max", "min")
 LARGE = 1_000  # designs that may take long: a bar tells
-# Designs of a thread that does all of the work on them; of fewer, threads share the search alone.
-LEAST_ALL_THROUGH = 16_384
+MOST = 2**16  # values at a time, so that their arrays stay in the cache
+# Designs of a part: at least what pays for a thread, at most half a second of work.
+USUAL_PART, COSTLY_PART = (2_048, 65_536), (64, 1_024)
+SPECIAL_BLOCK = 1_024  # designs
 
 
 class Checked(NamedTuple):
@@ -160,24 +160,24 @@ def peaks_of_designs(sought: Sought, search: Search, columns: dict[str, Array]) 
 
 
 def _all(work: Work, checked: Checked) -> dict[str, Any]:
-    """The peaks of all designs; many that are alike, in parts."""
-    size, usual, threads = checked.designs.size, work.usual, work.sought.threads
-    loads = checked.designs.loads
-    if loads or size < 2 * LEAST_ALL_THROUGH or (checked.special & ~checked.bad).any():
-        return _peaks(work, checked, threads)
-    kernel_for(usual, size)  # one for all parts: their order must not change a digit
+    """The peaks of all designs; of many in parts, on some threads."""
     found: dict[int, dict[str, Any]] = {}
 
     def part(first: int, last: int) -> None:
-        found[first] = _peaks(work, checked.part(slice(first, last)), 1)
+        with np.errstate(all="ignore"):
+            found[first] = _peaks(work, checked.part(slice(first, last)))
         work.told.add(last - first)
 
-    run_parts(part, size, threads, LEAST_ALL_THROUGH, LONGEST_PART)
+    costly = checked.designs.loads or checked.designs.conditions or checked.special.any()
+    least, longest = COSTLY_PART if costly else USUAL_PART
+    run_parts(part, checked.designs.size, work.sought.threads, least, longest)
     return _joined([found[first] for first in sorted(found)])
 
 
 def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
     """The results of consecutive designs as those of all."""
+    if len(parts) == 1:
+        return parts[0]
     columns = {name: [part[name] for part in parts] for name in parts[0]}
     return {
         name: _joined(column) if isinstance(column[0], dict) else np.concatenate(column)
@@ -185,85 +185,60 @@ def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
     }
 
 
-def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
+def _peaks(work: Work, checked: Checked) -> dict[str, Any]:
     """Value, angle, gradient and status of some designs."""
-    sought, search, usual, told = work
+    sought, search, usual, _ = work
     name, kind = sought.plan.name, sought.kind
-    designs, bad, own_nodes = checked
-    columns = designs.columns
+    designs, bad, special = checked
     out = np.empty((2 + len(search.parameters), designs.size))
-    theta = np.empty(designs.size)
-    status = np.zeros(designs.size, np.int8)
+    theta, status = np.empty(designs.size), np.zeros(designs.size, np.int8)
     number = KINDS.index(kind)
-    rows = np.flatnonzero(~own_nodes)
-    marked = designs.loads or designs.conditions
-    loaded = ValuesUnderLoads(name, search, designs, course_of(designs), told) if marked else None
-    under = _compiled_under(loaded, checked, rows.size) if rows.size and loaded is not None else None
-    if under is not None and loaded is not None:
-        tables = tables_under(under, designs, loaded.course)
-        grouped = partial(_classed, designs, rows)
-        if not programs_of(under, False).own_nodes:
-            grouped = partial(_classed_with, designs, rows, loaded.course.nodes[0])
-        run(under, columns, rows.size, grouped, number, theta, out, threads, tables)
-    elif rows.size and loaded is not None:
-        for part, nodes in with_nodes(_classed(designs, rows), loaded.course.nodes):
-            loaded.run(part, nodes, number, theta, out)
-    elif rows.size:
-        run(usual, columns, rows.size, partial(_classed, designs, rows), number, theta, out, threads)
+    course = course_of(designs) if designs.loads or designs.conditions else None
+    loaded = None if course is None else ValuesUnderLoads(name, search, designs, course)
+
+    def run(rows: Rows, nodes: Array, key: Search) -> None:
+        """Search designs, with one column of nodes or one for each."""
+        size = max(1, MOST // len(nodes))
+        quantity = evaluations_of(key) if loaded is None else loaded
+        for first in range(0, rows.size, size):
+            part = rows[first : first + size]
+            own = nodes if nodes.shape[1] == 1 else nodes[:, first : first + size]
+            theta[part], out[:, part] = search_block(quantity, number, own, quantity.block(designs, part))
+
+    for rows, grid in _classed(designs, np.flatnonzero(~special)):
+        run(rows, grid[:, None] if course is None else with_nodes(grid, course.nodes[rows]), usual)
     if bad.any():
         out[:, bad], status[bad] = np.nan, BAD_INPUT
-    rows = np.flatnonzero((own_nodes | np.isnan(out[0]) if rows.size else own_nodes) & ~bad)
-    for start in range(0, rows.size, special.BLOCK):
-        part = rows[start : start + special.BLOCK]
+    again = special if special.all() else special | np.isnan(out[0])
+    rows = np.flatnonzero(again & ~bad)
+    for start in range(0, rows.size, SPECIAL_BLOCK):
+        part = rows[start : start + SPECIAL_BLOCK]
         some = designs.part(part)
-        nodes, limits = special.own_nodes(some)
-        if loaded is not None:
-            nodes = np.sort(np.append(nodes, loaded.course.nodes[part], axis=1), axis=1)
-            loaded.run(part, nodes, number, theta, out)
-        else:
-            cost = special.NODES * rows.size if rows.size > 1 else 1  # one alone: its loops as they stand
-            run(search, columns, cost, partial(_each, part, nodes), number, theta, out, threads)
-            told.add(part.size)
-        found = special.SearchResult(out[0, part], theta[part], out[1, part], status[part])
-        marks = () if loaded is None else (loaded.course.kinks, loaded.course.jumps)
-        at = (mark.angles[part] for mark in marks)
-        usable = special.complete(name, kind, some, nodes, limits, found, search.parameters, *at)
+        nodes, limits = own_nodes(some)
+        if course is not None:
+            nodes = np.sort(np.append(nodes, course.nodes[part], axis=1), axis=1)
+        run(part, np.ascontiguousarray(nodes.T), search)
+        found = SearchResult(out[0, part], theta[part], out[1, part], status[part])
+        marks = () if course is None else (course.kinks.angles[part], course.jumps.angles[part])
+        usable = complete(name, kind, some, nodes, limits, found, search.parameters, *marks)
         out[0, part], theta[part], status[part] = found.value, found.theta, found.status
         out[2:, part] = np.where(usable, out[2:, part], np.nan)
     theta[np.isnan(out[0])] = np.nan
     side = np.zeros(designs.size, np.int8)
     if loaded is not None:
-        side = at_jumps(loaded, number, np.isin(status, special.USABLE) & np.isfinite(out[0]), theta, out)
+        side = at_jumps(loaded, number, np.isin(status, USABLE) & np.isfinite(out[0]), theta, out)
     if kind == "min" and not designs.rubs:
-        kinks = np.empty((designs.size, 0)) if loaded is None else loaded.course.kinks.angles
-        out[2:, special.stays_zero(designs, theta, out[0], out[1], kinks)] = 0.0
+        kinks = np.empty((designs.size, 0)) if course is None else course.kinks.angles
+        out[2:, stays_zero(designs, theta, out[0], out[1], kinks)] = 0.0
     value = np.abs(out[0]) if kind == "absmax" else out[0]
     gradient = dict(zip(search.parameters, out[2:], strict=True))
     return {"value": value, "theta": theta, "side": side, "gradient": gradient, "status": status}
 
 
-def _compiled_under(loaded: ValuesUnderLoads, checked: Checked, count: int) -> Search | None:
-    """The compiled search for `count` designs under loads; None where NumPy searches."""
-    if not loaded.derived:
-        return None
-    search = search_under(loaded.search, loaded.all, loaded.designs, loaded.course)
-    search = search and _in_form(search, checked)
-    return search if search is not None and is_compiled(search, count) else None
-
-
-def _classed_with(
-    designs: SearchedDesigns, rows: NDArray[np.intp], nodes: Array, coarse: bool = False
-) -> Groups:
-    """The designs by their classes, with the nodes of a load that all share."""
-    return with_own(_classed(designs, rows, coarse), nodes)
-
-
-def _each(rows: NDArray[np.intp], nodes: Array, together: bool = False) -> Groups:
-    """Designs with nodes of their own, a row each: a group each, or all `together`, nodes in columns."""
-    if together:
-        return Groups(rows, np.array([0, rows.size]), nodes.T, np.array([0, nodes.shape[1]]))
-    edges = np.arange(rows.size + 1)
-    return Groups(rows, edges, nodes.reshape(-1), edges * nodes.shape[1])
+def with_nodes(grid: Array, own: Array) -> Array:
+    """A column of nodes for each design: those of its class and a row of others, ascending."""
+    shared = np.broadcast_to(grid[:, None], (grid.size, len(own)))
+    return np.sort(np.concatenate([shared, own.T]), axis=0)
 
 
 def _in_form(search: Search, checked: Checked) -> Search:
@@ -274,15 +249,10 @@ def _in_form(search: Search, checked: Checked) -> Search:
     own, rows = checked.designs.lengths, np.flatnonzero(~checked.special)
     if not rows.size or search.extended or not own:
         return search
-    lengths = {name: _at(column, rows) for name, column in zip(LENGTHS, own, strict=True)}
+    lengths = {name: column[rows] for name, column in zip(LENGTHS, own, strict=True)}
     if all_have_wide_margins(search.form, **lengths) or have_wide_margins(lengths, search.form).all():
         return search._replace(form=search.form._replace(wide_margins=True))
     return search
-
-
-def _at(column: Array, rows: NDArray[np.intp]) -> Array:
-    """The values of some designs; of all of them without a copy."""
-    return column if rows.size == column.size else column[rows]
 
 
 def _checked(designs: SearchedDesigns) -> Checked:
@@ -296,22 +266,12 @@ def _checked(designs: SearchedDesigns) -> Checked:
                 columns[name] = np.where(fine, column, np.nan)
                 bad |= ~fine
     designs = designs._replace(columns=columns)
-    return Checked(designs, bad, special.are_special(designs))
+    return Checked(designs, bad, are_special(designs))
 
 
-def _classed(designs: SearchedDesigns, rows: NDArray[np.intp], coarse: bool = False) -> Groups:
-    """The designs by their classes, which share nodes; `coarse`: by few of them."""
-    lengths = [_at(column, rows) for column in designs.lengths]
+def _classed(designs: SearchedDesigns, rows: Rows) -> Iterator[tuple[Rows, Array]]:
+    """Designs by their classes, with the nodes that each class shares."""
+    lengths = [column[rows] for column in designs.lengths]
     numbers = classes(*lengths) if lengths else np.zeros(rows.size, np.int16)
-    if coarse:
-        numbers = coarser(numbers)
-    if rows.size == 1 or (numbers == numbers[0]).all():
-        nodes = shared_nodes(int(numbers[0]), *designs.theta)
-        return Groups(rows, np.array([0, rows.size]), nodes, np.array([0, nodes.size]))
-    places = np.argsort(numbers, kind="stable")
-    numbers = numbers[places]
-    first = np.append(0, 1 + np.flatnonzero(numbers[1:] != numbers[:-1]))
-    grids = [shared_nodes(int(number), *designs.theta) for number in numbers[first]]
-    starts = np.append(first, rows.size)
-    node_starts = np.cumsum([0, *(grid.size for grid in grids)])
-    return Groups(rows[places], starts, np.concatenate(grids), node_starts)
+    for number in np.unique(numbers).tolist():
+        yield rows[numbers == number], shared_nodes(number, *designs.theta)

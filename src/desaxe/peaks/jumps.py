@@ -127,7 +127,7 @@ def _certain(values: ValuesUnderLoads, rows: Rows, theta: Array, side: NDArray[n
     """The nearest angles to dead centres from which on rounding takes the friction of their own side."""
     steps = np.arange(ROUNDED + 1.0) * np.spacing(np.abs(theta) + 1.0)[:, None]
     angles = theta[:, None] + side[:, None] * steps
-    designs, name = values.designs.part(rows), values.curve[0]
+    designs, name = values.designs.part(rows), values.all[0]
     numbers = np.repeat(np.arange(rows.size), angles.shape[1])
     found = designs.values((name,), numbers, angles.reshape(-1))[name].reshape(angles.shape)
     wrong = ~(np.abs(found - found[:, -1:]) <= APART * np.abs(found[:, -1:]))

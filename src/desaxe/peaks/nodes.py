@@ -21,8 +21,7 @@ FAR = 1.2  # rad: as if no branch point were farther away
 CLASSES = 52  # the last one is for margins of 4^-51 crank lengths and less, 0 among them
 
 FINEST = CLASSES - 1
-# Classes that NumPy keeps apart: a design with a finer one loses no digit, and few groups share operations.
-COARSE = (5, 14, FINEST)
+KEPT_APART = np.array([5, 14, FINEST], np.int16)  # few classes share operations; a finer one loses no digit
 
 
 def classes(ec: Array, AB: Array, BC: Array) -> NDArray[np.int16]:
@@ -33,19 +32,11 @@ def classes(ec: Array, AB: Array, BC: Array) -> NDArray[np.int16]:
         return 64 * _class(near - offset) + _class(near + offset)
 
 
-def coarser(numbers: NDArray[np.int16]) -> NDArray[np.int16]:
-    """The classes with each of both replaced by the next one of COARSE, or by the finest of all designs."""
-    finer = np.array(COARSE, np.int16)
-    right, left = (
-        np.minimum(finer[np.searchsorted(finer, part)], part.max()) for part in np.divmod(numbers, 64)
-    )
-    return np.asarray(64 * right + left, np.int16)
-
-
 def _class(margin: Array) -> NDArray[np.int16]:
-    """The least k with margin >= 4^-k; any for NaN."""
+    """The least k that is kept apart with margin >= 4^-k; any for NaN."""
     exponent = (margin.view(np.int64) >> 52).astype(np.int16)  # margin in [2^(e-1023), 2^(e-1022)), or e < 0
-    found: NDArray[np.int16] = np.minimum(np.maximum((1024 - exponent) >> 1, 0), CLASSES - 1)
+    finest = np.minimum(np.maximum((1024 - exponent) >> 1, 0), FINEST)
+    found: NDArray[np.int16] = KEPT_APART[np.searchsorted(KEPT_APART, finest)]
     return found
 
 

@@ -1,9 +1,8 @@
 """`peak`: the refined extremum of a quantity over the crank angle, with its exact gradient.
 
-The search runs compiled, for many designs in a call (`search`); the first few designs of a kind
-run it in plain Python. By the envelope theorem the gradient of the extreme value is the partial
-derivative at the extreme angle. Friction makes kinks and jumps, where it has none, and arcs in which
-no forces balance, towards which they grow without bound (`special`).
+All designs of a call are searched at once (`search`). By the envelope theorem the gradient of the
+extreme value is the partial derivative at the extreme angle. Friction makes kinks and jumps, where it has
+none, and arcs in which no forces balance, towards which they grow without bound (`special`).
 """
 
 from collections.abc import Mapping

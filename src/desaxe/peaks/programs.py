@@ -31,7 +31,6 @@ class Search(NamedTuple):
     fixed: tuple[tuple[str, float], ...]
     extended: bool = False  # value, slope and gradient at the peak in double-double
     far: bool = False  # angles beyond what the written-out sine and cosine reduce exactly
-    held: tuple[str, ...] = ()  # loads that jump: the angle tells which of their pieces holds
 
 
 class SearchPrograms(NamedTuple):
@@ -40,9 +39,6 @@ class SearchPrograms(NamedTuple):
     curve: Program  # value and slope
     finish: Program
     inputs: tuple[str, ...]
-    tables: tuple[str, ...] = ()  # of loads
-    held: tuple[str, ...] = ()  # those of the loads that jump
-    own_nodes: bool = False  # whether each design has some: where the slider meets the ends of pieces
 
 
 def needs_own(name: str, parameters: Sequence[str]) -> list[str]:
@@ -56,14 +52,14 @@ def _by(name: str, parameter: str) -> str:
 
 
 @lru_cache(maxsize=1024)
-def programs_of(search: Search, written_out: bool) -> SearchPrograms:
-    """The programs of a search; for numba with sine and cosine written out."""
+def programs_of(search: Search) -> SearchPrograms:
+    """The programs of a search."""
     whole, outputs = _whole(search)
     value, slope, *gradient = outputs
 
     def prepared(names: Sequence[str]) -> Program:
         program = keep_outputs(whole, tuple(names))
-        if search.far or not written_out:
+        if search.far:
             return program
         return for_loops(program, constants(), search.form.wide_margins)
 
@@ -78,11 +74,7 @@ def programs_of(search: Search, written_out: bool) -> SearchPrograms:
     programs = prepared((value, slope)), last
     used = {name for program in programs for name in program.inputs}
     inputs = tuple(name for name in whole.inputs if name in used and name != "theta")
-    loads = search.form.under.loads if search.form.under is not None else ()
-    over = {load.force: load.over for load in loads}
-    return SearchPrograms(
-        *programs, inputs, tuple(over), search.held, not {"theta"}.issuperset(over.values())
-    )
+    return SearchPrograms(*programs, inputs)
 
 
 @lru_cache(maxsize=1024)

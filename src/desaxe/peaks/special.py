@@ -26,8 +26,6 @@ from .nodes import Array
 UNIFORM = 240  # nodes per turn
 GRADED = 2.0 ** -np.arange(1.0, 46.0)  # distances from a quarter or a limit angle, down to 3e-14
 AROUND = np.concatenate([-GRADED, [0.0], GRADED])
-NODES = 12  # times as many nodes as of designs that share them
-BLOCK = 1_024  # designs at a time, at most as many as a search by NumPy takes at once
 AT_KINK = 2.0**-40  # rad: an extremum so near to a kink is at the kink
 SMOOTH = 1e-6  # of the median slope: what is left of the slope at the top of a smooth peak is less
 ACROSS = 1e-6  # of the cosine of an angle: as far as a search ends from a jump

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from ..compiler.llvm.machine import compiled
 from ..support.forks import IMPORTS, imported
 from ..support.interrupts import finished
-from .executor import compiled_kernel
+from .executor import CompiledKernel, compiled_kernel
 from .kernels import KernelKey
 
 DOUBLE, BYTE = 12, 1  # NumPy's numbers of these types
@@ -27,8 +27,12 @@ class Bound(NamedTuple):
 
 def bind(key: KernelKey, numbers: Mapping[str, float], inputs: Sequence[str], repair: Any) -> Bound:
     """A kernel of these inputs, in their order, which calls `repair` where it leaves points over."""
-    kernel = finished(lambda: compiled_kernel(key, inputs))
-    address = ctypes.cast(repair, ctypes.c_void_p).value or 0
+    return bind_kernel(finished(lambda: compiled_kernel(key, inputs)), numbers, repair)
+
+
+def bind_kernel(kernel: CompiledKernel, numbers: Mapping[str, float], repair: Any = None) -> Bound:
+    """A kernel with the numbers among its inputs."""
+    address = 0 if repair is None else ctypes.cast(repair, ctypes.c_void_p).value or 0
     packed = kernel.data(numbers, address, _clear_flags())
     data = ctypes.create_string_buffer(packed, len(packed))
     return Bound(kernel.code.address, ctypes.addressof(data), (kernel, repair, data))

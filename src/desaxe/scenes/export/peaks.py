@@ -7,23 +7,24 @@ own (friction, a load that varies, designs that stall or cannot turn fully) are 
 
 import re
 from collections.abc import Mapping
+from pathlib import Path
 from textwrap import wrap
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...compiler.builder import Parts, functions_of, renamed
+from ...compiler.languages.numba import peaks
 from ...compiler.languages.numba.module import CALLABLE, numba_parts, signature
 from ...evaluation.arrays import as_array
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
 from ...mechanism.own_lines import has_kinks
-from ...peaks import special
-from ...peaks.compiled import SEARCH, texts_of
+from ...peaks import loops, special
 from ...peaks.designs import KINDS, PeakPlan, plan_of, search_of
 from ...peaks.nodes import FINEST, graded
-from ...peaks.programs import Search, programs_of
+from ...peaks.programs import Search, SearchPrograms, programs_of
 from ...support.template import filled
 from ...sweeps.peak_step import WORDS
 from ..content import Content, Peak
@@ -33,6 +34,7 @@ from .portable import left_out
 
 ROW, ROWS = "types.float64[::1]", "types.float64[:, ::1]"
 INDICES = "types.int64[::1]"
+SEARCH = Path(loops.__file__)
 OWN = ("sweep", "points", "finish", "search", "WORK")  # of each search
 
 
@@ -75,7 +77,7 @@ def _found(name: str, one: Peak, content: Content) -> ExportedPeak | None:
     if "mu" in plan.parameters or has_kinks(plan.wanted.form.own) or _special(plan, one, content):
         return None
     search = search_of(plan, arrays, one.theta)
-    used = (*programs_of(search, True).inputs, *LENGTHS, "omega0", "alpha")
+    used = (*programs_of(search).inputs, *LENGTHS, "omega0", "alpha")
     fixed = {
         n: float(given[n]) for n in dict.fromkeys(used) if n not in one.axes and given.get(n) is not None
     }
@@ -107,12 +109,21 @@ def _search_parts(search: Search, prefix: str) -> Parts:
     """A search under names of its own; what it shares with others is called so."""
     functions = functions_of(SEARCH)
     kinds = (ROWS, INDICES, INDICES, ROW, INDICES, ROW, "types.int64", ROW, ROWS)
-    own = [*texts_of(programs_of(search, True), "numba"), functions["search"]]
+    own = [*texts_of(programs_of(search)), functions["search"]]
     words = {name: prefix if name == "search" else f"{prefix}_{name}" for name in OWN}
     parts = [renamed(text, words) for text in own] + [signature(f"{prefix}_signature", "void", kinds)]
     shared = {name: f"search_{name}" for name in functions}
     found = numba_parts(parts, SEARCH, jit=CALLABLE)
     return found._replace(texts=tuple(renamed(text, shared, called=True) for text in found.texts))
+
+
+def texts_of(programs: SearchPrograms) -> list[str]:
+    """`sweep`, `points` and `finish`, and the rows that `sweep` keeps."""
+    rows = peaks.Rows(programs.inputs, "theta")
+    sweep, work = peaks.sweep_function(programs.curve, rows)
+    points = peaks.points_function(programs.curve, rows)
+    finish = peaks.finish_function(programs.finish, rows)
+    return [f"WORK = {max(work, 1)}\n", sweep, points, finish]
 
 
 def _nodes_text() -> str:
@@ -130,7 +141,7 @@ def _table_row(one: ExportedPeak, prefix: str) -> str:
         KIND=str(KINDS.index(one.peak.kind)),
         THETA=repr(tuple(map(float, one.peak.theta))),
         ROWS=str(2 + len(slots)),
-        INPUTS=repr(programs_of(one.search, True).inputs),
+        INPUTS=repr(programs_of(one.search).inputs),
         FIXED=repr(one.fixed),
         SLOPES=repr(slopes),
         AXES=[row for name, values in one.peak.axes.items() for row in axis_rows(name, values, "", 80)],

@@ -1,11 +1,11 @@
-"""A loop that looks tables up, of a kernel or of a search: three loops over a block of points.
+"""A loop that looks tables up: three loops over a block of points.
 
 A search in a loop keeps LLVM from making vectors of all the rest. So the first loop computes what the tables
 are looked up at, the second looks up, and the third computes what hangs on that. What the third needs of the
 first is kept in rooms, on the stack.
 """
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from ...kernel import Kernel
@@ -76,20 +76,12 @@ def rooms(parts: Parted) -> list[str]:
 
 
 def three_loops(
-    parts: Parted,
-    here: str,
-    length: str,
-    reads: Mapping[str, str],
-    stores: Sequence[str],
-    held: Collection[str] = (),
-    along: str = "",
+    parts: Parted, here: str, length: str, reads: Mapping[str, str], stores: Sequence[str]
 ) -> list[str]:
     """The text of a loop over `length` points.
 
     here    its index
     reads   what each point reads
-    held    the tables whose pieces another input tells, by the arcs of it; the others are searched
-    along   the text that reads that input
     """
     place = f"{here} - start"
     points = f"for {here} in range(start, stop):"
@@ -98,47 +90,29 @@ def three_loops(
     keep = [f"put({name}_room, {place}, {name})" for name in parts.kept]
     for line in parts.searches:
         x, _, way = line.args
-        keep += [f"put({line.name}_at_room, {place}, {x})"]
-        keep += [f"put({line.name}_way_room, {place}, {way})"] if str(line.args[1]) not in held else []
+        keep += [f"put({line.name}_at_room, {place}, {x})", f"put({line.name}_way_room, {place}, {way})"]
     again = [f"{n} = get({n}_room, {place})" for n in (*parts.kept, *(f.name for f in parts.found))]
     return [
         f"length = {length}",
         f"for start in range(uint64(0), length, uint64({BLOCK})):",
         f"{INDENT}stop = min(start + uint64({BLOCK}), length)",
         *_under(points, [*_used(read, parts.first, parts.places), *first, *keep]),
-        *(INDENT + row for row in _searched(parts, here, along, held)),
+        *(INDENT + row for row in _searched(parts)),
         *_under(points, [*_used([*read, *again], parts.second), *second, *stores]),
     ]
 
 
-def _searched(parts: Parted, here: str, along: str, held: Collection[str]) -> list[str]:
+def _searched(parts: Parted) -> list[str]:
     """Look up: the pieces first, which values and slopes share."""
     rows = []
     for line in parts.searches:
-        room, table = f"{line.name}_room", str(line.args[1])
-        if table in held:
-            rows += _on_arcs(room, table, here, along)
-        else:
-            places = f"{line.name}_at_room, {line.name}_way_room"
-            rows.append(f"find_pieces(stop - start, {places}, {table}_x, {room})")
+        places = f"{line.name}_at_room, {line.name}_way_room"
+        rows.append(f"find_pieces(stop - start, {places}, {line.args[1]}_x, {line.name}_room)")
     at = {line.name: f"{line.name}_at_room, {line.name}_room" for line in parts.searches}
     for line in parts.found:
         table, where = str(line.args[1]), at[str(line.args[2])]
         rows.append(f"{VALUES[line.op]}(stop - start, {where}, {table}_x, {table}_c, {line.name}_room)")
     return rows
-
-
-def _on_arcs(room: str, table: str, here: str, along: str) -> list[str]:
-    """The pieces of the arcs of some points: each arc that has begun changes them by a number."""
-    place, loop = f"{here} - start", f"for {here} in range(start, stop):"
-    change = f"{table}_change[{here}] if {table}_begin[{here}] <= {along} else 0.0"
-    return [
-        loop,
-        f"{INDENT}put({room}, {place}, 0.0)",
-        f"for k in range({table}_first, {table}_last):",
-        f"{INDENT}{table}_begin, {table}_change = block[k], block[k + {table}_last - {table}_first]",
-        *_under(loop, [f"put({room}, {place}, get({room}, {place}) + ({change}))"]),
-    ]
 
 
 def _used(reads: Sequence[str], program: Program, more: Sequence[str] = ()) -> list[str]:

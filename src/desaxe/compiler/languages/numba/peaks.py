@@ -7,72 +7,35 @@ from ...cost import cost_of
 from ...passes.slicing import drop_unused, keep_outputs
 from ...program import Line, Program, names_in
 from ...text import INDENT, with_short_temporaries, write_lines
-from .lookups import parted, rooms, three_loops
 from .module import NJIT
 
 SWEEP = "count, nodes, block, tables, work, value, slope"
+COUNTED = "range(uint64(count))"
 READ = 2.0  # what reading a value costs, in additions
 
 
 class Rows:
-    """Reads designs and spells lines in one language; `searched` is the searched input.
+    """Reads designs; `searched` is the searched input."""
 
-    tables  names of those that are looked up
-    held    those of them of which the angle tells the piece: rows behind the inputs say where each begins
-    own     whether each design has nodes of its own
-    """
+    def __init__(self, inputs: Sequence[str], searched: str) -> None:
+        self.inputs, self.searched = tuple(inputs), searched
 
-    def __init__(
-        self,
-        inputs: Sequence[str],
-        column: str,
-        searched: str,
-        tables: Sequence[str] = (),
-        held: Sequence[str] = (),
-        own: bool = False,
-    ) -> None:
-        self.inputs, self.column, self.searched = tuple(inputs), column, searched
-        self.tables, self.held, self.own = tuple(tables), tuple(held), own
-        compiled = column == "numba"
-        self.jit = NJIT if compiled else ""
-        self.range = "range(uint64({}))" if compiled else "range({})"
-        self.read = "{}" if compiled else "float({})"
+    def views(self, program: Program) -> list[str]:
+        """A name for the row of each input."""
+        return [f"{n}_row = block[{self.inputs.index(n)}]" for n in self._own(program)]
 
-    def views(self, program: Program, source: str = "block") -> list[str]:
-        """A name for the row of each input, and for the arrays of each table."""
-        return [*(f"{n}_row = {source}[{self.inputs.index(n)}]" for n in self._own(program)), *self._given()]
-
-    def _given(self) -> list[str]:
-        rows, first = [], str(len(self.inputs))
-        for k, table in enumerate(self.tables):
-            rows += [f"{table}_{end} = part_of(tables, {1 + 2 * k + n})" for n, end in enumerate("xc")]
-        for k, table in enumerate(self.held):
-            rows += [f"{table}_count = int64(part_of(tables, 0)[{1 + k}])", f"{table}_first = {first}"]
-            rows += [f"{table}_last = {table}_first + {table}_count"]
-            first = f"{table}_last + {table}_count"
-        return rows
-
-    def loop(self, program: Program, along: str, stores: Sequence[str]) -> tuple[list[str], list[str]]:
-        """A loop over `count` designs, each at its own value of the searched input; what goes before all."""
-        read = {self.searched: self.read.format(along)}
-        if not self.tables:
-            body = [f"{n} = {text}" for n, text in read.items()] + self.reads(program) + self.lines(program)
-            return [f"for i in {self.range.format('count')}:", *_in([*body, *stores])], []
-        read |= {n: self.read.format(f"{n}_row[i]") for n in self._own(program)}
-        parts = parted(program)
-        return three_loops(parts, "i", "uint64(count)", read, stores, self.held, along), rooms(parts)
+    def loop(self, program: Program, along: str, stores: Sequence[str]) -> list[str]:
+        """A loop over `count` designs, each at its own value of the searched input."""
+        body = [f"{self.searched} = {along}", *self.reads(program), *lines_of(program), *stores]
+        return [f"for i in {COUNTED}:", *_in(body)]
 
     def reads(self, program: Program) -> list[str]:
         """The inputs of design i."""
-        return [f"{n} = {self.read.format(f'{n}_row[i]')}" for n in self._own(program)]
-
-    def lines(self, program: Program) -> list[str]:
-        """The assignments."""
-        return write_lines(program, self.column)
+        return [f"{n} = {n}_row[i]" for n in self._own(program)]
 
     def function(self, name: str, parameters: str, body: Sequence[str]) -> str:
         """The text of a function."""
-        return self.jit + function_text(name, [parameters], body)
+        return NJIT + function_text(name, [parameters], body)
 
     def _own(self, program: Program) -> list[str]:
         return [n for n in program.inputs if n in self.inputs]
@@ -84,9 +47,6 @@ def sweep_function(program: Program, rows: Rows) -> tuple[str, int]:
     Precondition: two outputs. Lines that depend on no design run once a node, lines that do not depend
     on the searched input once a design where keeping them pays.
     """
-    if rows.own:
-        every = ["points(nodes.shape[0], count, nodes, block, tables, value, slope)"]
-        return rows.function("sweep", SWEEP, every), 0
     program = with_short_temporaries(program)
     kept, rest = _split(program, rows.searched)
     shared = _without(rest, set(rows.inputs) | set(kept.outputs))
@@ -99,12 +59,12 @@ def sweep_function(program: Program, rows: Rows) -> tuple[str, int]:
     numbered = list(enumerate(kept.outputs))
     body = [*rows.views(program), *(f"{n}_kept = work[{k}]" for k, n in numbered)]
     if numbered:
-        body += [f"for i in {rows.range.format('count')}:"]
-        body += _in([*rows.reads(kept), *rows.lines(kept), *(f"{n}_kept[i] = {n}" for _, n in numbered)])
-    node = [f"{rows.searched} = " + rows.read.format("nodes[j]"), *rows.lines(shared)]
-    node += ["value_row = value[j]", "slope_row = slope[j]", f"for i in {rows.range.format('count')}:"]
-    every = [*rows.reads(inner), *(f"{n} = {rows.read.format(f'{n}_kept[i]')}" for _, n in numbered)]
-    every += rows.lines(inner)
+        body += [f"for i in {COUNTED}:"]
+        body += _in([*rows.reads(kept), *lines_of(kept), *(f"{n}_kept[i] = {n}" for _, n in numbered)])
+    node = [f"{rows.searched} = " + "nodes[j]", *lines_of(shared)]
+    node += ["value_row = value[j]", "slope_row = slope[j]", f"for i in {COUNTED}:"]
+    every = [*rows.reads(inner), *(f"{n} = {n}_kept[i]" for _, n in numbered)]
+    every += lines_of(inner)
     every += [f"value_row[i] = {program.outputs[0]}", f"slope_row[i] = {program.outputs[1]}"]
     body += ["for j in range(nodes.size):", *_in([*node, *_in(every)])]
     return rows.function("sweep", SWEEP, body), len(numbered)
@@ -115,8 +75,8 @@ def points_function(program: Program, rows: Rows) -> str:
     program = with_short_temporaries(program)
     names = ("value", "slope")
     stores = [f"{n}_row[i] = {o}" for n, o in zip(names, program.outputs, strict=True)]
-    loop, before = rows.loop(program, "theta_row[i]", stores)
-    body = [*rows.views(program), *before, "for j in range(rows):"]
+    loop = rows.loop(program, "theta_row[i]", stores)
+    body = [*rows.views(program), "for j in range(rows):"]
     body += _in(["theta_row = thetas[j]", *(f"{n}_row = {n}[j]" for n in names), *loop])
     return rows.function("points", "rows, count, thetas, block, tables, value, slope", body)
 
@@ -125,8 +85,8 @@ def finish_function(program: Program, rows: Rows) -> str:
     """`finish(count, theta, block, tables, out)`."""
     program = with_short_temporaries(program)
     places = list(enumerate(program.outputs))
-    loop, before = rows.loop(program, "thetas[i]", [f"out_{k}[i] = {name}" for k, name in places])
-    body = [*rows.views(program), *before, *(f"out_{k} = out[{k}]" for k, _ in places), *loop]
+    loop = rows.loop(program, "thetas[i]", [f"out_{k}[i] = {name}" for k, name in places])
+    body = [*rows.views(program), *(f"out_{k} = out[{k}]" for k, _ in places), *loop]
     return rows.function("finish", "count, thetas, block, tables, out", body)
 
 
@@ -155,6 +115,11 @@ def _independent(program: Program, inputs: set[str]) -> list[Line]:
             dependent.add(line.name)
             used |= set(names_in(line.args))
     return [line for line in program.lines if line.name in used - dependent]
+
+
+def lines_of(program: Program) -> list[str]:
+    """The assignments."""
+    return write_lines(program, "numba")
 
 
 def _in(lines: Sequence[str]) -> list[str]:

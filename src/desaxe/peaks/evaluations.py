@@ -1,0 +1,59 @@
+"""Values of a quantity in machine code: with its slope, and both with the gradient."""
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiler.lowering import nest
+from ..compiler.program import Program
+from ..runtime.executor import CompiledKernel
+from ..runtime.native_calls import bind_kernel, ufunc_of
+from ..support.interrupts import finished
+from .nodes import Array
+from .programs import Search, programs_of
+from .special import SearchedDesigns
+
+MOST_KEPT = 256
+
+
+class ProgramFunction:
+    """A Program whose inputs are arrays that broadcast, as a function that gives a tuple of arrays."""
+
+    def __init__(self, program: Program, arguments: Sequence[str]) -> None:
+        """Compile it; the arguments may be more than it reads."""
+        kernel = nest(program, dict.fromkeys(program.inputs, 0), 1)
+        bound = bind_kernel(finished(lambda: CompiledKernel(kernel, arguments)), {})
+        whole = [False] * len(kernel.outputs)
+        self.call, self._kept = ufunc_of(bound, len(arguments), whole, "search")
+
+
+class Evaluations:
+    """The quantity of a search (see `search.Curve`), for blocks of its `inputs`."""
+
+    def __init__(self, search: Search) -> None:
+        """Compile it."""
+        programs = programs_of(search)
+        self.inputs = programs.inputs
+        arguments = ("theta", *programs.inputs)
+        self._curve, self._finish = (ProgramFunction(p, arguments) for p in (programs.curve, programs.finish))
+
+    def block(self, designs: SearchedDesigns, rows: NDArray[np.intp]) -> Array:
+        """The inputs of designs for `curve` and `finish`."""
+        return np.stack([designs.columns[name][rows] for name in self.inputs])
+
+    def curve(self, theta: Array, block: Array) -> tuple[Array, Array]:
+        """Value and slope at angles that broadcast with the rows of the block."""
+        value, slope = self._curve.call(theta, *block)
+        return value, slope
+
+    def finish(self, theta: Array, block: Array) -> Array:
+        """Value, slope and gradient at an angle of each design: a row each."""
+        return np.array(self._finish.call(theta, *block))
+
+
+@lru_cache(maxsize=MOST_KEPT)
+def evaluations_of(search: Search) -> Evaluations:
+    """The evaluations of a search, compiled once a process."""
+    return Evaluations(search)
