@@ -1,6 +1,5 @@
-"""Sweeps on a Dask cluster: the same bytes, also when a worker is killed."""
+"""Sweeps on a Dask cluster: the same values, also when a worker is killed."""
 
-import hashlib
 import os
 import signal
 from threading import Thread
@@ -8,22 +7,14 @@ from time import sleep
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import desaxe as dx
-from desaxe.sweeps.cluster import Crew, run_all
-from desaxe.sweeps.tasks import VersionError, check_version
+from desaxe.sweeps.workers import VersionError, check_version, run_all
 
 INPUTS = {"theta": np.linspace(0.0, 6.0, 60), "ec": np.linspace(-0.1, 0.3, 20), "AB": 0.1, "omega0": 3.0}
 NAMES = ["V_C", "a_C"]
 CHUNKS = {"theta": 2}
-
-
-def files(root):
-    return {
-        str(path.relative_to(root)): hashlib.sha256(path.read_bytes()).hexdigest()
-        for path in sorted(root.rglob("*"))
-        if path.is_file()
-    }
 
 
 @pytest.mark.thorough
@@ -50,7 +41,7 @@ def test_a_killed_worker_costs_its_chunks_only(tmp_path):
         dx.sweep(NAMES, store=together, client=client, chunks=CHUNKS, **inputs)
         killer.join()
         reduced = dx.sweep(NAMES, reduce={"theta": "absmax"}, client=client, **inputs)
-    assert files(together) == files(tmp_path / "alone.zarr")
+    assert xr.open_zarr(together).load().identical(xr.open_zarr(tmp_path / "alone.zarr").load())
     own = dx.grid(NAMES, reduce={"theta": "absmax"}, **inputs)
     np.testing.assert_allclose(reduced["a_C_absmax"], own["a_C_absmax"], rtol=1e-14)
 
@@ -72,5 +63,5 @@ def test_after_an_error_no_further_task_begins():
         return number
 
     with ThreadPoolExecutor(1) as executor, pytest.raises(OSError, match="no space left"):
-        list(run_all(Crew(executor, 1), work, range(100)))
+        list(run_all(executor, work, range(100), 2))
     assert begun[-1] <= 4

@@ -32,22 +32,22 @@ def add_sweep(commands: Any) -> None:
 
 def _sweep(options: argparse.Namespace) -> int:
     from ..scenes.scene import scene
-    from ..sweeps.tasks import VersionError
+    from ..sweeps.workers import VersionError
 
-    wanted = scene(options.scene)
-    if options.store is None and wanted.content.store is None:
+    content = scene(options.scene).content
+    if options.store is None and content.store is None:
         raise UsageError("where to? give -o STORE.zarr, or [results] store in the scene")
     if options.netcdf is not None:
-        _require_netcdf(options.netcdf, options.overwrite)
+        _require_netcdf(Path(options.netcdf), options.overwrite)
     try:
-        found = _swept(wanted.content, options)
+        dataset = _swept(content, options)
     except VersionError as error:
         raise UsageError(str(error)) from None
-    shape = " x ".join(f"{name} ({size})" for name, size in found.sizes.items())
-    place = printable(options.store or wanted.content.store)
-    print(f"{place}: {', '.join(map(str, found.data_vars))} over {shape or 'one point'}")
+    shape = " x ".join(f"{name} ({size})" for name, size in dataset.sizes.items())
+    store = printable(options.store or content.store)
+    print(f"{store}: {', '.join(map(str, dataset.data_vars))} over {shape or 'one point'}")
     if options.netcdf is not None:
-        _write_netcdf(found, options.netcdf, options.overwrite)
+        _write_netcdf(dataset, Path(options.netcdf), options.overwrite)
     return 0
 
 
@@ -55,16 +55,9 @@ def _swept(content: Any, options: argparse.Namespace) -> Any:
     """The sweep of a scene, on threads here or on a Dask cluster."""
     from ..scenes.parts.stored import sweep_content
 
+    chosen = {name: getattr(options, name) for name in ("store", "memory", "overwrite")}
     with _client(options) as client:
-        return sweep_content(
-            content,
-            tell=print,
-            store=options.store,
-            chunks=_chunks(options.chunks),
-            memory=options.memory,
-            overwrite=options.overwrite,
-            client=client,
-        )
+        return sweep_content(content, tell=print, chunks=_chunks(options.chunks), client=client, **chosen)
 
 
 def _chunks(text: str | None) -> Any:
@@ -86,43 +79,29 @@ def _client(options: argparse.Namespace) -> Iterator[Any]:
     if options.workers is None and options.scheduler is None:
         yield None
         return
-    with needed("a Dask cluster"):
-        from distributed import Client, LocalCluster
-    if options.scheduler is not None:
-        with Client(options.scheduler, timeout="30s") as client:
-            yield client
-        return
-    if options.workers < 1:
+    if options.workers is not None and options.workers < 1:
         raise UsageError(f"--workers {options.workers}: at least 1")
-    with (
-        LocalCluster(n_workers=options.workers, threads_per_worker=1, dashboard_address=None) as cluster,
-        Client(cluster) as client,
-    ):
+    with needed("a Dask cluster"):
+        from distributed import Client
+    here = {"n_workers": options.workers, "threads_per_worker": 1, "dashboard_address": None}
+    with Client(options.scheduler, timeout="30s", **({} if options.scheduler else here)) as client:
         yield client
 
 
-def _require_netcdf(place: str, overwrite: bool) -> None:
+def _require_netcdf(path: Path, overwrite: bool) -> None:
     """Fail before the sweep where the NetCDF file could not be written."""
-    from ..scenes.stores.files import check_place
-    from ..support.files import require_writable
+    from ..support.written import require_place
 
-    if not place.endswith(".nc"):
-        raise UsageError(f"--netcdf {printable(place)}: its name must end in .nc")
-    check_place(Path(place), overwrite)
-    require_writable(Path(place))
+    if path.suffix != ".nc":
+        raise UsageError(f"--netcdf {printable(path)}: its name must end in .nc")
+    require_place(path, overwrite)
 
 
-def _write_netcdf(found: Any, place: str, overwrite: bool) -> None:
+def _write_netcdf(dataset: Any, path: Path, overwrite: bool) -> None:
     """Write the Dataset as one file, if there is memory for it."""
     from ..scenes.stores.files import write
-    from ..sweeps.layout import size_text
-    from ..sweeps.memory import free_memory
+    from ..support.memory import require
 
-    free = free_memory()
-    if free is not None and found.nbytes > free // 2:
-        raise MemoryError(
-            f"--netcdf {printable(place)}: {size_text(found.nbytes)} do not fit into the free memory "
-            f"({size_text(free)}); the Zarr store is complete"
-        )
-    write(Path(place), found.load(), {}, overwrite)
-    print(f"{printable(place)}: the same as NetCDF")
+    require(2 * dataset.nbytes, f"--netcdf {printable(path)}")
+    write(path, dataset.load(), {}, overwrite)
+    print(f"{printable(path)}: the same as NetCDF")

@@ -56,8 +56,8 @@ def sweep(
                shows points, rate and time left
 
     A sweep that was stopped goes on where it stopped when it is called again: chunks that are whole
-    are kept, and the finished store has the same bytes as that of an undisturbed run. A finished store
-    is read, checked and left as it is.
+    are kept, and the finished store has the same values as that of an undisturbed run. A finished store
+    is read, checked and left as it is; one whose metadata or coordinates are damaged is refused by name.
 
     Raises FileExistsError for a store of another request, version or derivation, with what differs;
     BlockingIOError while another sweep writes it; OSError where the disk has too little room;

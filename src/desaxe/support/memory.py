@@ -1,30 +1,61 @@
-"""A check for free memory before a result is allocated."""
+"""Memory: sizes as numbers and texts, and a check for free memory before a result is allocated."""
 
 import os
+import re
 import sys
 from contextlib import suppress
 from math import inf
+from numbers import Real
 from pathlib import Path
+from typing import Any
 
 from .forks import IMPORTS
+from .shown import shown
 
 ALWAYS = 100_000_000  # bytes that are not checked
 _CGROUP = Path("/sys/fs/cgroup")
+_SIZE = re.compile(
+    r"\s*((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[0-9]{1,2})?)\s*(?:([kmgt]?)(i?)b)?\s*", re.IGNORECASE
+)
 
 
-def require(size: int, what: str) -> None:
+def bytes_of(memory: Any) -> int | None:
+    """A number of bytes, or text such as "200 MB"; None stays None."""
+    if memory is None:
+        return None
+    is_number = isinstance(memory, Real) and not isinstance(memory, bool)
+    if isinstance(memory, str):
+        match = _SIZE.fullmatch(memory)
+        if match is None:
+            raise ValueError(f'memory = {shown(memory)}: a number of bytes, or text such as "200 MB"')
+        prefix = " kmgt".index((match[2] or " ").lower())
+        number = float(match[1]) * (1024.0 if match[3] else 1000.0) ** prefix
+    elif not is_number:
+        raise TypeError(f'memory = {shown(memory)}: a number of bytes, or text such as "200 MB"')
+    else:
+        number = float(max(min(memory, 2**63), -1))
+    if not 1.0 <= number < 2.0**63:
+        raise ValueError(f"memory = {shown(memory)}: at least one byte, less than 2^63")
+    return int(number)
+
+
+def size_text(size: float) -> str:
+    """A number of bytes as text, in kB, MB, GB or TB."""
+    for unit in ("bytes", "kB", "MB", "GB"):
+        if size < 1000.0:
+            return f"{size:.0f} bytes" if unit == "bytes" else f"{size:.3g} {unit}"
+        size /= 1000.0
+    return f"{size:.3g} TB"
+
+
+def require(size: float, what: str) -> None:
     """Raise MemoryError where a result of `size` bytes does not fit into the memory that is free."""
     if size < ALWAYS:
         return
     free = available()
     if size > free:
-        told = f"{what} takes {in_words(size)} and {in_words(free)} are free"
+        told = f"{what} takes {size_text(size)} and {size_text(free)} are free"
         raise MemoryError(f"{told}: ask for fewer points or names, or for a reduction (reduce=)")
-
-
-def in_words(size: float) -> str:
-    """A number of bytes as text, in MB or GB."""
-    return f"{size / 1e9:.3g} GB" if size >= 1e9 else f"{size / 1e6:.3g} MB"
 
 
 def available() -> float:

@@ -15,13 +15,11 @@ from ..mechanism.program import digest
 from ..runtime.accuracy import accuracy_of
 from ..runtime.request import several
 from ..support.version import version as desaxe_version
-from .layout import Layout, layout_of, table_of
+from .layout import Layout, layout_of
 from .peak_step import PeakRequest, PeakStep, peak_requests, peak_steps
 
 if TYPE_CHECKING:
     import xarray as xr
-
-IDENTITY = ("request", "version", "digest")
 
 
 class SweepRequest(NamedTuple):
@@ -57,28 +55,26 @@ class Sweep(NamedTuple):
         return self.plan.blocks(self.layout.chunk)
 
 
-def sweep_of(asked: SweepRequest) -> Sweep:
+def sweep_of(request: SweepRequest) -> Sweep:
     """The sweep of a request, checked; nothing is computed or written."""
-    names, branch, accuracy = asked.names, asked.branch, asked.accuracy
-    if asked.reduce is not None:
-        names = ((names,) if isinstance(names, str) else several(names)) + names_reduced(asked.reduce)
-    outer = outer_of(names, asked.inputs, branch, asked.threads, always=asked.reduce is None)
+    names, branch, accuracy = request.names, request.branch, request.accuracy
+    if request.reduce is not None:
+        names = ((names,) if isinstance(names, str) else several(names)) + names_reduced(request.reduce)
+    outer = outer_of(names, request.inputs, branch, request.threads, always=request.reduce is None)
     for name in outer.dimensions:
         if not outer.axes[name].size:
             raise ValueError(f"{name}: a sweep needs at least one value of it")
-    kept = accuracy_of(accuracy)
-    reductions = reductions_asked(asked.reduce, outer)
-    requests = peak_requests(asked.peaks, outer)
-    plan = _plan_of(outer, branch, accuracy, reductions, peak_steps(requests, outer, branch, accuracy))
-    sizes, outputs = plan.sizes, ((s, o) for s in plan.all for o in s.outputs.values())
-    stored = sum(output.dtype.itemsize for step, output in outputs if len(step.dims) == len(sizes))
-    layout = layout_of(asked.chunks, sizes, stored, None if reductions is None else plan.behind, asked.memory)
-    return Sweep(plan, layout, plan.empty(), identity(plan, kept, requests))
-
-
-def reductions_asked(reduce: Any, outer: Outer) -> Reductions | None:
-    """The reductions that are asked for, checked."""
-    return None if reduce is None else reductions_of(reduce, outer.dimensions, outer.names)
+    checked = accuracy_of(accuracy)
+    reductions = (
+        None if request.reduce is None else reductions_of(request.reduce, outer.dimensions, outer.names)
+    )
+    peaks = peak_requests(request.peaks, outer)
+    plan = _plan_of(outer, branch, accuracy, reductions, peak_steps(peaks, outer, branch, accuracy))
+    outputs = ((step, output) for step in plan.all for output in step.outputs.values())
+    stored = sum(output.dtype.itemsize for step, output in outputs if len(step.dims) == len(plan.sizes))
+    behind = None if reductions is None else plan.behind
+    layout = layout_of(request.chunks, plan.sizes, stored, behind, request.memory)
+    return Sweep(plan, layout, plan.empty(), identity(plan, checked, peaks))
 
 
 def _plan_of(
@@ -114,63 +110,50 @@ def _require_names_apart(peaks: Sequence[PeakStep]) -> None:
 def identity(plan: Plan, accuracy: str, peaks: Sequence[PeakRequest] = ()) -> dict[str, str]:
     """The attributes that a store of this plan has: no time, path or host is among them."""
     outer = plan.outer
-    texts = [repr(step.own) for step in plan.all if step.own]
     request = {
         "names": list(outer.names),
         "reduce": {} if plan.reductions is None else plan.reductions.plain(),
         "peaks": [list(one) for one in peaks],
-        "definitions": [hashlib.sha256(text.encode()).hexdigest() for text in texts],
+        "definitions": [_digest(repr(step.own).encode()) for step in plan.all if step.own],
+        "quantities": json.loads(text_of(outer.names) or "{}"),
         "branch": int(plan.branch),
         "accuracy": accuracy,
-        "inputs": {name: _input(array) for name, array in outer.axes.items()}
-        | {name: {"load": load.told(), "sha256": load.identity} for name, load in outer.loads.items()},
+        **{name: _input(array) for name, array in outer.axes.items()},
+        **{name: f"{load.told()} ({load.identity})" for name, load in outer.loads.items()},
     }
-    own = text_of(outer.names)
-    if own:
-        request["quantities"] = json.loads(own)
-    version, program = versions()
-    return {"request": json.dumps(request), "version": version, "digest": program}
-
-
-def versions() -> tuple[str, str]:
-    """The version of desaxe and the digest of its derivation."""
-    return desaxe_version(), digest()
+    return {"request": json.dumps(request), "version": desaxe_version(), "digest": digest()}
 
 
 def _input(array: NDArray[Any]) -> Any:
-    """An input for the request: a number, or size, ends and hash of an axis."""
+    """An input for the request: a number, or size, ends and digest of an axis."""
     if not array.ndim:
         return array.item()
-    ends = {"from": float(array[0]), "to": float(array[-1])} if array.size else {}
-    values = hashlib.sha256(array.astype("<f8").tobytes()).hexdigest()
-    return {"values": array.size, **ends, "sha256": values}
+    ends = f" from {float(array[0])!r} to {float(array[-1])!r}" if array.size else ""
+    return f"{array.size} values{ends} ({_digest(array.astype('<f8').tobytes())})"
+
+
+def _digest(data: bytes) -> str:
+    return f"sha256 {hashlib.sha256(data).hexdigest()[:16]}"
 
 
 def differences(there: Mapping[str, Any], here: Mapping[str, str]) -> list[str]:
-    """The differences between a store's request and the current one, a line for each."""
-    lines = [
-        f"{name} is {there.get(name)!r} there and {here[name]!r} here"
-        for name in ("version", "digest")
-        if there.get(name) != here[name]
+    """The differences between a store's attributes and the current identity, a line for each."""
+    old, new = _facts(there), _facts(here)
+    return [
+        f"{name} is {_text(old.get(name))} there and {_text(new.get(name))} here"
+        for name in dict.fromkeys((*new, *old))
+        if old.get(name) != new.get(name)
     ]
-    old, new = table_of(there.get("request")), table_of(here["request"])
-    old_inputs, new_inputs = (table_of(request.pop("inputs", None)) for request in (old, new))
-    for part, other in ((old, new), (old_inputs, new_inputs)):
-        lines += [
-            f"{name} is {_shown(part.get(name))} there and {_shown(other.get(name))} here"
-            for name in dict.fromkeys((*part, *other))
-            if part.get(name) != other.get(name)
-        ]
-    return lines
 
 
-def _shown(value: Any) -> str:
-    if value is None:
-        return "not given"
-    if not isinstance(value, Mapping) or "sha256" not in value:
-        return json.dumps(value)
-    digest = f"(sha256 {str(value['sha256'])[:8]})"
-    if "load" in value:
-        return f"{value['load']} {digest}"
-    ends = f" from {value['from']!r} to {value.get('to')!r}" if "from" in value else ""
-    return f"{value.get('values')} values{ends} {digest}"
+def _facts(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """The facts of an identity by name; a damaged request has none."""
+    facts = {name: attributes.get(name) for name in ("version", "digest")}
+    try:
+        return {**facts, **json.loads(attributes["request"])}
+    except (KeyError, ValueError, TypeError, RecursionError):
+        return facts
+
+
+def _text(value: Any) -> str:
+    return "not given" if value is None else value if isinstance(value, str) else json.dumps(value)

@@ -1,18 +1,16 @@
 """The Zarr store of a sweep: a chunk is whole or absent, whatever stops the writer.
 
-The skeleton (metadata, coordinates, attributes) is written beside the store's place and put there in one
-step. A chunk is written to a `.partial` file, flushed to the disk and renamed; its checksum tells whether
-it is whole. Nothing in a finished store depends on when, where, how often or by how many it was written.
+Metadata and coordinates are written beside the store's path and put there in one step; zarr renames a chunk
+into its place, and its checksum tells whether it is whole. A store whose metadata or coordinates say
+something else is named and never passed: it would be read as something that no sweep computed.
 """
 
-import asyncio
 import json
 import os
 import shutil
-import sys
-import uuid
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,105 +18,188 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.labels import import_xarray
+from ..evaluation.plan import Part
 from ..support.extras import explained
-from ..support.files import exchange, staging
+from ..support.files import kind_of, remove_strays, require_writable, staging, swap_in, write_bytes
 from ..support.forks import IMPORTS
 from ..support.locks import locked
+from ..support.memory import size_text
 from ..support.shown import printable
 from ..support.signals import put_off
-from .skeleton import METADATA, STATE, with_state
+from .request import Sweep, differences
 
 with put_off(), explained("a sweep"):
     import zarr
+    from zarr.codecs import Crc32cCodec, ZstdCodec
     from zarr.core.buffer import Buffer
-    from zarr.storage import LocalStore
+    from zarr.storage import LocalStore, MemoryStore
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[Any]
-PARTIAL = ".partial"
-HELD = "another sweep is writing this store"
+METADATA = "zarr.json"
+CHUNKS, STATE = "chunks", "state"  # attributes: the layout, and whether the store is complete
+LEVEL = 1  # of zstd: doubles hardly shrink, and this is the fastest
+CONSOLIDATED = "Consolidated metadata is currently not part"  # of the format, a warning says
+SEVERAL = 3  # differences that are named
+DAMAGED = (ValueError, RuntimeError, OSError, LookupError, TypeError, AttributeError)  # what zarr raises
 
 
-class DurableStore(LocalStore):
-    """A folder whose files appear whole, and stay after a power failure."""
-
-    async def set(self, key: str, value: Buffer) -> None:
-        """Write a file."""
-        await asyncio.to_thread(self.set_sync, key, value)
-
-    def set_sync(self, key: str, value: Buffer) -> None:
-        """Write a file, in the calling thread."""
-        write_durably(Path(self.root) / key, value.to_bytes())
-
-
-def write_durably(path: Path, data: bytes) -> None:
-    """Write a file that appears whole, and stays after a power failure."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(f"{path.name}.{uuid.uuid4().hex}{PARTIAL}")
-    try:
-        with open(partial, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        with suppress(OSError):
-            path.rmdir()  # an empty folder in its place
-        os.replace(partial, path)
-    except BaseException as error:
-        with suppress(OSError):
-            partial.unlink()
-        if isinstance(error, OSError) and error.filename is None:  # of a write to a full disk
-            raise OSError(error.errno, error.strerror, str(path)) from error
-        raise
+def zarr_files(parts: "Mapping[str | None, xr.Dataset]", **options: Any) -> dict[str, Buffer]:
+    """The files of a Zarr store by their keys, from the Dataset of each group; None is the store itself."""
+    files: dict[str, Buffer] = {}
+    store = MemoryStore(files)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message=CONSOLIDATED)
+        for group, part in parts.items():
+            part.to_zarr(store, mode="a", group=group, consolidated=False, zarr_format=3, **options)
+        zarr.consolidate_metadata(store)
+    return files
 
 
-def sync(folder: Path) -> None:
-    """See to it that the names in a folder survive a power failure, where the system can."""
-    if sys.platform != "win32":
-        descriptor = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)
+def put(root: Path, files: Mapping[str, Buffer]) -> None:
+    """Write the files of a store into a staging folder."""
+    for key, data in files.items():
+        (root / key).parent.mkdir(parents=True, exist_ok=True)
+        (root / key).write_bytes(data.to_bytes())
 
 
-# ---- the skeleton --------------------------------------------------------------------------------
+def put_group(root: Path, name: str, part: "xr.Dataset") -> None:
+    """Put a group into an existing store, whole; it replaces one of that name."""
+    with staging(root) as folder:
+        put(folder, zarr_files({name: part}))
+        swap_in(folder / name, root / name)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message=CONSOLIDATED)
+        zarr.consolidate_metadata(LocalStore(root))  # what xarray looks for when it opens the store
 
 
-def create(root: Path, files: Mapping[str, bytes], replace: bool) -> None:
-    """Create a store of these files; `replace` an existing one.
+def _skeleton(sweep: Sweep) -> dict[str, Buffer]:
+    """All files of a store but the chunks that the sweep computes."""
+    template, chunk = sweep.template, sweep.layout.chunk
+    encoding = {
+        str(name): {
+            "chunks": tuple(chunk[str(dim)] if name not in template.coords else max(1, template.sizes[dim])
+                            for dim in variable.dims),
+            "compressors": [ZstdCodec(level=LEVEL), Crc32cCodec()],
+        }
+        for name, variable in template.variables.items()
+    }  # fmt: skip
+    labelled = template.assign_attrs({**sweep.identity, CHUNKS: json.dumps(chunk), STATE: "incomplete"})
+    return zarr_files({None: labelled}, compute=False, encoding=encoding, safe_chunks=False)
 
-    BlockingIOError where there is one and it may not be replaced.
+
+# ---- the store -----------------------------------------------------------------------------------
+
+
+@contextmanager
+def claimed(sweep: Sweep, root: Path, overwrite: bool) -> Iterator[Sweep]:
+    """Make the store, or check the existing one, and hold it; yields the sweep with the chunks of the store.
+
+    BlockingIOError where another sweep is writing it, else the errors of `checked`.
     """
-    with staging(root.parent) as folder:
-        staged = folder / root.name
-        put(staged, files)
-        sync_folders(staged)
-        if not replace:
-            _rename(staged, root)
-        elif not exchange(staged, root):
-            shutil.rmtree(root)
-            os.rename(staged, root)
-        sync(root.parent)
+    checked(sweep, root, overwrite)
+    root.parent.mkdir(parents=True, exist_ok=True)
+    with ExitStack() as stack:
+        with locked(root.parent):  # whoever makes or replaces a store here
+            kept = checked(sweep, root, overwrite)
+            if kept is None:
+                with _held(root) if root.exists() else nullcontext(), staging(root.parent) as folder:
+                    put(folder / root.name, _skeleton(sweep))
+                    swap_in(folder / root.name, root)
+            stack.enter_context(_held(root))
+        yield kept or sweep
 
 
-def _rename(staged: Path, root: Path) -> None:
-    """Put a store where nothing or an empty folder is; BlockingIOError where another sweep has put one."""
+@contextmanager
+def _held(root: Path) -> Iterator[None]:
     try:
-        if sys.platform == "win32" and root.is_dir():  # elsewhere an empty folder is replaced in one step
-            root.rmdir()
-        os.rename(staged, root)
-    except OSError:
-        if attributes(root) is None:
-            raise
-        raise BlockingIOError(f"{printable(root)}: {HELD}") from None
+        with locked(root, wait=0.0):
+            yield
+    except TimeoutError:
+        raise BlockingIOError(f"{printable(root)}: another sweep is writing this store") from None
 
 
-def put(root: Path, files: Mapping[str, bytes]) -> None:
-    """Write files of a store by their places."""
-    for place, data in files.items():
-        write_durably(root / place, data)
+def checked(sweep: Sweep, root: Path, overwrite: bool) -> Sweep | None:
+    """The sweep with the chunks of the store to go on with; None where a store is to be made.
+
+    FileExistsError for what may not be replaced, OSError where nothing can be written or the disk is too
+    small, MemoryError where a chunk takes too much.
+    """
+    there = attributes(root)
+    if there is None:
+        if os.path.lexists(root) and (not root.is_dir() or any(root.iterdir())):
+            raise FileExistsError(f"{printable(root)}: this is no Zarr store; it is left as it is")
+        require_writable(root)
+    else:
+        kept, why = _compared(sweep, root, there)
+        if kept is not None and not (overwrite and kept.layout != sweep.layout):
+            return kept
+        if not overwrite:
+            raise FileExistsError(f"{printable(root)}: {why}. overwrite=True replaces it")
+    sweep.layout.require_memory()
+    require_disk(sweep, root, sweep.plan.bytes)
+    return None
+
+
+def _compared(sweep: Sweep, root: Path, there: Mapping[str, Any]) -> tuple[Sweep | None, str]:
+    """The sweep with the chunks of its store; None and why not for a store of another one."""
+    other = differences(there, sweep.identity) if "request" in there else ["no sweep wrote it"]
+    if other:
+        return None, f"a store of another sweep: {_several(other)}"
+    try:
+        kept = sweep._replace(layout=sweep.layout.cut(there.get(CHUNKS)))
+        changed = _changes(kept, root)
+    except DAMAGED as error:
+        kept, changed = sweep, [" ".join(str(error).split())]
+    return (None, f"changed since a sweep wrote it: {_several(changed)}") if changed else (kept, "")
+
+
+def _several(lines: Sequence[str]) -> str:
+    return "; ".join(lines[:SEVERAL]) + ("; ..." if len(lines) > SEVERAL else "")
+
+
+def _changes(sweep: Sweep, root: Path) -> list[str]:
+    """The differences of metadata and coordinates between a store and its sweep; raises one of DAMAGED."""
+    files = _skeleton(sweep)
+    for key in files:
+        if kind_of(root / key):  # a pipe would be waited for
+            raise ValueError(f"{key} is {kind_of(root / key)}")
+    found: list[str] = []
+    for consolidated in (True, False):  # the copy that xarray reads, and the one of each array
+        here, there = (
+            zarr.open_group(store, mode="r", zarr_format=3, use_consolidated=consolidated)
+            for store in (MemoryStore(files), LocalStore(root, read_only=True))
+        )
+        found += _different("", dict(there.attrs), {k: v for k, v in here.attrs.items() if k != STATE})
+        for name, array in here.arrays():
+            other: Any = there[name]
+            lines = _different(f"{name}.", _metadata(other), _metadata(array))
+            if not lines and name in sweep.template.coords:
+                same = np.array_equal(other[...], np.asarray(array[...]), equal_nan=True)
+                lines = [] if same else [f"values of {name}"]
+            found += lines
+    return [*dict.fromkeys(found)]
+
+
+def _metadata(array: Any) -> dict[str, Any]:
+    facts: dict[str, Any] = array.metadata.to_dict()
+    attributes = facts.pop("attributes")
+    return facts | {f"attributes.{key}": value for key, value in attributes.items()}
+
+
+def _different(where: str, there: Mapping[str, Any], here: Mapping[str, Any]) -> list[str]:
+    """The differences of facts, one by one; the group may have attributes that others added."""
+    return [
+        f"{where}{key} is {_text(there.get(key))} there and {_text(here.get(key))} here"
+        for key in dict.fromkeys((*here, *(there if where else ())))
+        if there.get(key) != here.get(key)
+    ]
+
+
+def _text(value: Any) -> str:
+    return json.dumps(value, default=str)
 
 
 def attributes(root: Path) -> dict[str, Any] | None:
@@ -126,73 +207,38 @@ def attributes(root: Path) -> dict[str, Any] | None:
     try:
         if not (root / METADATA).is_file():
             return None
-        found = json.loads((root / METADATA).read_text(encoding="utf-8"))
-        return dict(found["attributes"]) if found["node_type"] == "group" else None
-    except (OSError, ValueError, KeyError, TypeError):
+        group = json.loads((root / METADATA).read_text(encoding="utf-8"))
+        return dict(group["attributes"]) if group["node_type"] == "group" else None
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
 
 
-def set_state(root: Path, state: str) -> None:
-    """Write the state (complete or not) into the store's attributes, if it differs."""
-    path = root / METADATA
-    metadata = path.read_bytes()
-    if json.loads(metadata)["attributes"].get(STATE) != state:
-        write_durably(path, with_state(metadata, state))
-        sync(root)
+def finish(root: Path) -> None:
+    """Mark a store as complete, and remove what killed writers left in it and beside it."""
+    group = json.loads((root / METADATA).read_text(encoding="utf-8"))
+    if group["attributes"][STATE] != "complete":
+        group["attributes"][STATE] = "complete"
+        write_bytes(root / METADATA, json.dumps(group, indent=2).encode())
+    for path in root.rglob("*.partial"):
+        path.unlink(missing_ok=True)
+    remove_strays(root.parent)
 
 
-@contextmanager
-def held(root: Path) -> Iterator[None]:
-    """Hold the store for the length of a block; BlockingIOError where another sweep does."""
-    try:
-        with locked(root, wait=0.0):
-            yield
-    except TimeoutError:
-        raise BlockingIOError(f"{printable(root)}: {HELD}") from None
+def require_disk(sweep: Sweep, root: Path, size: int) -> None:
+    """OSError if the disk has too little free space for `size` bytes of the store."""
+    free = free_at(root)
+    if size > free:
+        raise OSError(
+            28,
+            f"the store takes up to {size_text(size)} ({sweep.plan.points:,} points, "
+            f"{len(sweep.template.data_vars)} variables), {size_text(free)} are free",
+            str(root),
+        )
 
 
-# ---- chunks --------------------------------------------------------------------------------------
-
-
-def _array(root: Path, name: str, mode: str) -> Any:
-    return zarr.open_array(DurableStore(root, read_only=mode == "r"), path=name, mode=mode, zarr_format=3)
-
-
-def write_chunk(root: Path, name: str, region: Sequence[slice], values: Array) -> None:
-    """Write a chunk of a variable, also where all of it is NaN."""
-    if values.dtype.kind == "f":
-        np.copyto(values, np.nan, where=np.isnan(values))  # one NaN: others have bits that machines choose
-    array = _array(root, name, "r+").with_config({"write_empty_chunks": True})
-    array[tuple(region) if region else ...] = values
-
-
-def chunk_path(root: Path, name: str, place: Sequence[int]) -> Path:
-    """The file of a chunk."""
-    return root.joinpath(name, "c", *map(str, place))
-
-
-def is_whole(root: Path, name: str, place: Sequence[int], region: Sequence[slice]) -> bool:
-    """True if a chunk exists and its checksum is right."""
-    if not chunk_path(root, name, place).is_file():
-        return False
-    try:
-        _array(root, name, "r")[tuple(region) if region else ...]
-    except (ValueError, RuntimeError, OSError):
-        return False
-    return True
-
-
-def remove_strays(root: Path) -> None:
-    """Remove what a writer that was killed left behind."""
-    for path in root.rglob(f"*{PARTIAL}"):
-        with suppress(FileNotFoundError):
-            path.unlink()
-
-
-def sync_folders(root: Path) -> None:
-    """See to it that the names of all files survive a power failure."""
-    for path in (root, *(path for path in root.rglob("*") if path.is_dir())):
-        sync(path)
+def free_at(root: Path) -> int:
+    """Bytes that are free where a store is, or will be."""
+    return shutil.disk_usage(next(path for path in root.parents if path.exists())).free
 
 
 def open_store(root: Path) -> "xr.Dataset":
@@ -201,5 +247,39 @@ def open_store(root: Path) -> "xr.Dataset":
     with IMPORTS:
         import xarray
 
-    found: xr.Dataset = xarray.open_zarr(root)
-    return found
+    dataset: xr.Dataset = xarray.open_zarr(root)
+    return dataset
+
+
+# ---- chunks --------------------------------------------------------------------------------------
+
+
+def absent(sweep: Sweep, root: Path) -> int:
+    """The number of chunks that are not in the store; an existing one may still be damaged."""
+    return sum(
+        any(not _chunk(root, name, part).is_file() for part in block.parts for name in part.step.outputs)
+        for block in sweep.blocks()
+    )
+
+
+def _chunk(root: Path, name: str, part: Part) -> Path:
+    return root.joinpath(name, "c", *map(str, part.place))
+
+
+def is_whole(root: Path, name: str, part: Part) -> bool:
+    """True if the chunk of a part exists and its checksum is right."""
+    try:
+        if _chunk(root, name, part).is_file():
+            zarr.open_array(str(root / name), mode="r", zarr_format=3)[part.region or ...]
+            return True
+    except DAMAGED:
+        pass
+    return False
+
+
+def write_chunk(root: Path, name: str, part: Part, values: Array) -> None:
+    """Write the chunk of a part, also where all of it is NaN."""
+    with suppress(OSError):
+        _chunk(root, name, part).rmdir()  # an empty folder in its place
+    array = zarr.open_array(str(root / name), mode="r+", zarr_format=3)
+    array.with_config({"write_empty_chunks": True})[part.region or ...] = values

@@ -135,7 +135,7 @@ def _sweep(content: Content) -> dict[str, Any] | None:
         return None
     made = sweep_of(request_of(content))
     layout = made.layout
-    at_once = min(content.threads or available(), layout.at_once(content.memory), layout.chunks)
+    at_once = min(content.threads or available(), layout.at_once)
     return {
         "store": content.store,
         "chunks": layout.chunks,

@@ -42,12 +42,10 @@ def request_of(content: Content) -> SweepRequest:
 def require_store(content: Content, overwrite: bool) -> None:
     """Fail at the start where the sweep of a scene may not go to its store, or has no room."""
     with IMPORTS:
-        from ...sweeps.place import require_place
+        from ...sweeps.store import checked
 
     assert content.store is not None
-    require_place(
-        sweep_of(request_of(content)), Path(os.path.abspath(content.store)), overwrite, content.memory
-    )
+    checked(sweep_of(request_of(content)), Path(os.path.abspath(content.store)), overwrite)
 
 
 def sweep_content(content: Content, **options: Any) -> "xr.Dataset":

@@ -23,8 +23,8 @@ from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.slips import UnitWarning, slips_of_forces
 from ...runtime.accuracy import accuracy_of
 from ...scenes import schema
+from ...support.memory import bytes_of
 from ...support.toml import read_toml
-from ...sweeps.layout import bytes_of
 from ..content import Content
 from ..parts.motor import on_motor
 from ..schema import SECTIONS, SceneError, shown

@@ -2,7 +2,6 @@
 
 places       what a run needs and where it writes, looked at before it computes
 files        NetCDF, Zarr, CSV, xlsx, npz
-quiet_store  a folder of zarr in which the first error ends the writing
 tables       a labelled result as rows, units in the headings
 workbook     sheets of an .xlsx file
 """

@@ -7,16 +7,15 @@ may be overwritten.
 
 import csv
 import os
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...evaluation.labels import source
 from ...support.files import check_target, kind_of, require_space, staging, swap_in
-from ...support.forks import IMPORTS, imported
+from ...support.forks import IMPORTS
 from ...support.shown import printable
 from ...support.written import require_ours, sign_archive
 from .tables import table_of
@@ -100,22 +99,17 @@ def _netcdf(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Da
 
 def _zarr(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
     with IMPORTS:
-        from ...sweeps.skeleton import CONSOLIDATED
-        from .quiet_store import quiet_store
+        from ...sweeps.store import put, zarr_files
 
-    with quiet_store(path) as store, warnings.catch_warnings():
-        for group, part in _parts(values, groups):
-            mode: Literal["a", "w"] = (
-                "a" if group is None and path.exists() else "w"
-            )  # of a group: only this is replaced
-            part.to_zarr(store, mode=mode, group=group, consolidated=False)
-        warnings.filterwarnings("ignore", message=CONSOLIDATED)
-        imported("zarr").consolidate_metadata(store)  # what xarray looks for when it opens the store
+    put(path, zarr_files(dict(_parts(values, groups))))
 
 
 def store_group(path: Path, name: str, part: "xr.Dataset") -> list[Path]:
     """Add a group to the Zarr store of a sweep, or replace it there."""
-    _zarr(path, None, {name: part})
+    with IMPORTS:
+        from ...sweeps.store import put_group
+
+    put_group(path, name, dict(_parts(None, {name: part}))[name])
     return []
 
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from ...support.extras import needed
 from ...support.files import require_writable
+from ...support.memory import size_text
 from ...support.written import require_place
-from ...sweeps.layout import size_text
 from ..content import Content
 from ..parts.extremes import groups_of
 from ..parts.stored import require_store
