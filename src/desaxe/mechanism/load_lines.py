@@ -27,6 +27,7 @@ class LoadLines(NamedTuple):
     period  of a table over theta: a number, 0 without one, or the name of an input
     first   the first knot of such a table
     ways    whether another table holds for the way inward
+    held    whether the number of the piece that holds is an input, `<force>_piece`
     """
 
     force: str
@@ -34,6 +35,7 @@ class LoadLines(NamedTuple):
     period: float | str = 0.0
     first: float | str = 0.0
     ways: bool = True
+    held: bool = False
 
 
 class Total(NamedTuple):
@@ -123,8 +125,10 @@ class _Writer:
             self.slopes.update({(force, p): f"{force}_by_{p}" for p in parameters})
             return
         x = self._reduced(load) if load.over == "theta" else self._along(load)
-        way = 1.0 if load.over == "theta" or not load.ways else self._ahead()
-        piece = self.new(f"{force}_piece", "lookup_piece", x, table, way)
+        piece = f"{force}_piece"
+        if not load.held:
+            way = 1.0 if load.over == "theta" or not load.ways else self._ahead()
+            self.new(piece, "lookup_piece", x, table, way)
         value = self.new(f"{force}_found", "lookup", x, table, piece)
         size = self.new(f"{force}_size", "abs", value)
         finite = self.new(f"{force}_is_finite", "le", size, float_info.max, type="bool")

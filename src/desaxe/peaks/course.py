@@ -37,7 +37,7 @@ class Marks(NamedTuple):
 class Course(NamedTuple):
     """The loads of designs over a range of angles.
 
-    nodes  where a search looks, besides the nodes of every design
+    nodes  where a search looks, besides the nodes of every design: a row for all, or one for each
     kinks  where a load is not smooth; every dead centre under a load over Y
     jumps  the first angle after each jump
     arcs   those of the loads over Y that jump
@@ -53,6 +53,10 @@ class Course(NamedTuple):
     def pieces(self, rows: NDArray[np.intp], theta: Array) -> dict[str, NDArray[np.intp]]:
         """The pieces to hold at angles of the designs `rows`."""
         return {name: arcs.at(rows, theta) for name, arcs in self.arcs.items()}
+
+    def nodes_of(self, rows: NDArray[np.intp]) -> Array:
+        """The nodes of the designs `rows`: one row for all, or one for each."""
+        return self.nodes if len(self.nodes) == 1 else self.nodes[rows]
 
     def aside(self, rows: NDArray[np.intp], theta: Array) -> Array:
         """The angles of the designs `rows`, moved off dead centres, where friction jumps."""
@@ -85,6 +89,8 @@ def course_of(designs: SearchedDesigns) -> Course:
     parts += conditions
     nodes = np.concatenate([np.full((designs.size, 1), low), *(part.nodes for part in parts)], axis=1)
     nodes = np.where(np.isfinite(nodes), np.clip(nodes, low, high), low)
+    if not (over_Y or designs.conditions):
+        nodes = nodes[:1]
     some = (nodes != low).any(axis=0)  # of four turns that a range may touch, most are empty
     some[0] = True
     nodes = nodes[:, some]

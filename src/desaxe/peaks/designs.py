@@ -206,7 +206,7 @@ def _peaks(work: Work, checked: Checked) -> dict[str, Any]:
             theta[part], out[:, part] = search_block(quantity, number, own, quantity.block(designs, part))
 
     for rows, grid in _classed(designs, np.flatnonzero(~special)):
-        run(rows, grid[:, None] if course is None else with_nodes(grid, course.nodes[rows]), usual)
+        run(rows, grid[:, None] if course is None else with_nodes(grid, course.nodes_of(rows)), usual)
     if bad.any():
         out[:, bad], status[bad] = np.nan, BAD_INPUT
     again = special if special.all() else special | np.isnan(out[0])
@@ -216,7 +216,8 @@ def _peaks(work: Work, checked: Checked) -> dict[str, Any]:
         some = designs.part(part)
         nodes, limits = own_nodes(some)
         if course is not None:
-            nodes = np.sort(np.append(nodes, course.nodes[part], axis=1), axis=1)
+            more = np.broadcast_to(course.nodes_of(part), (part.size, course.nodes.shape[1]))
+            nodes = np.sort(np.append(nodes, more, axis=1), axis=1)
         run(part, np.ascontiguousarray(nodes.T), search)
         found = SearchResult(out[0, part], theta[part], out[1, part], status[part])
         marks = () if course is None else (course.kinks.angles[part], course.jumps.angles[part])
@@ -236,9 +237,9 @@ def _peaks(work: Work, checked: Checked) -> dict[str, Any]:
 
 
 def with_nodes(grid: Array, own: Array) -> Array:
-    """A column of nodes for each design: those of its class and a row of others, ascending."""
-    shared = np.broadcast_to(grid[:, None], (grid.size, len(own)))
-    return np.sort(np.concatenate([shared, own.T]), axis=0)
+    """A column of nodes for each row of others: these and those of a class, ascending."""
+    shared = np.broadcast_to(grid, (len(own), grid.size))
+    return np.ascontiguousarray(np.sort(np.concatenate([shared, own], axis=1), axis=1).T)
 
 
 def _in_form(search: Search, checked: Checked) -> Search:

@@ -1,7 +1,8 @@
 """Values of a quantity in machine code: with its slope, and both with the gradient."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
+from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,44 @@ class ProgramFunction:
         bound = bind_kernel(finished(lambda: CompiledKernel(kernel, arguments)), {})
         whole = [False] * len(kernel.outputs)
         self.call, self._kept = ufunc_of(bound, len(arguments), whole, "search")
+
+
+class TotalsFunction:
+    """A Program under loads as a function of arrays by name, which broadcast, and of the loads' tables."""
+
+    def __init__(self, program: Program, tables: Sequence[str]) -> None:
+        """Compile it."""
+        self.inputs, self._count = program.inputs, len(program.outputs)
+        self._by_arrays = None if tables else ProgramFunction(program, program.inputs)
+        if tables:
+            kernel = nest(program, dict.fromkeys(program.inputs, 0), 1)._replace(given=tuple(tables))
+            self._kernel = finished(lambda: CompiledKernel(kernel))
+
+    def __call__(self, values: Mapping[str, Array]) -> Sequence[Array]:
+        """The outputs."""
+        if self._by_arrays is not None:
+            outputs: Sequence[Array] = self._by_arrays.call(*(values[name] for name in self.inputs))
+            return outputs
+        shape = np.broadcast_shapes(*(values[name].shape for name in self.inputs))
+        flat = {name: _flat(values[name], shape) for name in self.inputs}
+        outs = np.empty((self._count, *shape))
+        self._kernel.run({**values, **flat}, [*outs.reshape(self._count, -1)])
+        return [*outs]
+
+
+def _flat(values: Array, shape: tuple[int, ...]) -> Array:
+    """An array of one dimension; a number is repeated without a copy."""
+    if values.size == 1:
+        return np.broadcast_to(values.reshape(()), (prod(shape),))
+    return np.broadcast_to(values, shape).reshape(-1)
+
+
+@lru_cache(maxsize=MOST_KEPT)
+def totals_of(search: Search) -> tuple[TotalsFunction, TotalsFunction]:
+    """Value and slope under loads, and these with the gradient, compiled once a process."""
+    programs, under = programs_of(search), search.form.under
+    tables = [] if under is None else [load.force for load in under.loads if load.over]
+    return TotalsFunction(programs.curve, tables), TotalsFunction(programs.finish, tables)
 
 
 class Evaluations:

@@ -4,20 +4,23 @@ Between jumps the piece of a load over Y is held, so that next to one a value is
 from its side; there are nodes on both.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.under_loads.loaded import MOTION, forces_at, plan_for
+from ..evaluation.under_loads.request import table_arrays
 from ..evaluation.values import values
 from ..loads.resolve import Forces, LoadPlan
 from ..mechanism.names import parts, sensitivity
 from .course import Course
-from .evaluations import evaluations_of
+from .evaluations import evaluations_of, totals_of
 from .nodes import Array
 from .programs import Search, needs_own
 from .special import SearchedDesigns
+from .under import over_theta_at, search_under
 
 Rows = NDArray[np.intp]
 
@@ -34,24 +37,46 @@ class ValuesUnderLoads:
         self.bad = np.isnan(np.array(list(designs.columns.values()))).any(axis=0)
         self.derived = not needs_own(search.name, ("theta", *search.parameters))
         self.plans: dict[int, LoadPlan] = {}
+        under = search_under(search, self.all, designs) if self.derived else None
+        self.totals = None if under is None else totals_of(under)
+        self.tables = table_arrays(designs.loads)
 
     def at(self, count: int, rows: Rows, theta: Array, pieces: dict[str, Rows] | None = None) -> list[Array]:
-        """Value, slope and gradient, the first `count` of them, at an angle of each of some designs.
+        """Value, slope and gradient, the first `count` of them, at angles that broadcast with some designs.
 
         pieces   of the loads that jump, without those that hold at these angles
         """
-        bad = np.isnan(theta) | self.bad[rows]
-        some = bool(bad.any())
-        theta = np.where(bad, 1.0, theta) if some else theta  # a value that any input can have
         held = self.course.pieces(rows, theta) if pieces is None else pieces
         aside = self.course.aside(rows, theta) if pieces is None and self.designs.rubs else theta
-        inputs: dict[str, Any] = {"alpha": 0.0, "theta": aside}
-        for name, column in self.designs.columns.items():
-            inputs[name] = np.where(bad, 1.0, column[rows]) if some else column[rows]
-        found = self._of_plan(count, inputs, held) if self.derived else self._of_search(inputs, held)
+        by = self._of_totals if self.totals is not None else self._of_good
+        found = [*by(count, rows, aside, held)][:count]
         if aside is not theta:
             found[0] = np.where(aside == theta, found[0], found[0] + found[1] * (theta - aside))
-        return [np.where(bad, np.nan, row) for row in found[:count]] if some else found[:count]
+        return found
+
+    def _of_totals(self, count: int, rows: Rows, theta: Array, held: dict[str, Rows]) -> Sequence[Array]:
+        """By machine code."""
+        assert self.totals is not None
+        totals = self.totals[count > 2]
+        inputs = {**self.tables, **over_theta_at(self.designs.loads, theta), "theta": theta}
+        inputs |= {f"{force}_piece": piece.astype(float) for force, piece in held.items()}
+        columns = self.designs.columns
+        for name in totals.inputs:
+            if name in columns:
+                column = columns[name]
+                inputs[name] = column[rows] if column.strides[0] else column[:1]  # or one number for all
+        return totals(inputs)
+
+    def _of_good(self, count: int, rows: Rows, theta: Array, held: dict[str, Rows]) -> Sequence[Array]:
+        """By values at the angles and designs that are numbers; NaN at others."""
+        theta, rows = np.broadcast_arrays(theta, rows)
+        bad = np.isnan(theta) | self.bad[rows]
+        shape, rows, theta = theta.shape, rows.reshape(-1), np.where(bad, 1.0, theta).reshape(-1)
+        inputs: dict[str, Any] = {"alpha": 0.0, "theta": theta}
+        inputs |= {n: np.where(self.bad, 1.0, column)[rows] for n, column in self.designs.columns.items()}
+        held = {force: piece.reshape(-1) for force, piece in held.items()}
+        found = self._of_plan(count, inputs, held) if self.derived else self._of_search(inputs, held)
+        return [np.where(bad, np.nan, row.reshape(shape)) for row in found]
 
     def _of_plan(self, count: int, inputs: dict[str, Any], held: dict[str, Rows]) -> list[Array]:
         names = list(dict.fromkeys(self.all[:count]))
@@ -89,9 +114,8 @@ class ValuesUnderLoads:
 
     def curve(self, theta: Array, block: Array) -> tuple[Array, Array]:
         """Value and slope at angles that broadcast with the rows of the block."""
-        theta, rows = np.broadcast_arrays(theta, block[0].astype(np.intp))
-        value, slope = self.at(2, rows.reshape(-1), theta.reshape(-1))
-        return value.reshape(theta.shape), slope.reshape(theta.shape)
+        value, slope = self.at(2, block[0].astype(np.intp), theta)
+        return value, slope
 
     def finish(self, theta: Array, block: Array) -> Array:
         """Value, slope and gradient at an angle of each design: a row each."""

@@ -44,7 +44,9 @@ class Arcs(NamedTuple):
 
     def at(self, rows: NDArray[np.intp], theta: Array) -> NDArray[np.intp]:
         """The pieces of the arcs of some angles, of the designs `rows`."""
-        places = (self.starts[rows] <= theta[:, None]).sum(axis=1) - 1
+        places = np.full(np.broadcast_shapes(theta.shape, rows.shape), -1)
+        for starts in self.starts.T:
+            places += starts[rows] <= theta
         found: NDArray[np.intp] = self.pieces[rows, places]
         return found
 
