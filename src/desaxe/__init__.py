@@ -94,7 +94,10 @@ PUBLIC = {
     "equation": "desaxe.derive.equation",
 }
 # Functions that take inputs: a call of a person's is looked at for slips of units, an inner one is not.
-WARN_OF_SLIPS = ("steady",)
+WARN_OF_SLIPS = (
+    "evaluate", "function", "grid", "peak", "inverse", "enclose", "design_map", "events", "optimize",
+    "steady", "tolerance", "harmonics", "counterweight", "drive", "fit", "feasibility", "simulate", "sweep",
+)  # fmt: skip
 MODULES = {"plot": "desaxe.plot", "status": "desaxe.mechanism.status", "units": "desaxe.units"}
 
 __all__ = [
@@ -156,7 +159,7 @@ def __getattr__(name: str) -> Any:
     with _explained(name):
         value = getattr(_import_whole(PUBLIC[name]), name)
     if name in WARN_OF_SLIPS:
-        value = _import_whole("desaxe.mechanism.slips").warning(value)
+        value = _import_whole("desaxe.mechanism.public").warning(value)
     globals()[name] = value
     return value
 

@@ -137,7 +137,7 @@ COMPLAINTS = {
     "point": "which quantity?",
     "point aC POINT": "unknown quantity 'aC'; did you mean a_C?",
     "point a_C CD=3": "CD=3: no input is called 'CD', there are theta, ec",
-    "point a_C rod=3": "no input is called 'rod', did you mean BC? There are",
+    "point a_C rod=3": "no input is called 'rod', did you mean BC, r_rod or m_rod?",
     "point a_C theta = 60deg": "=: an input and its value are one word, such as theta=60deg",
     "point a_C theta=": "theta=: an input and its value are one word",
     "point a_C ec=10 mm": "ec=10 mm: a value and its unit are one word, ec=10mm or",

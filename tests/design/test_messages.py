@@ -105,6 +105,11 @@ TABLE = [  # a call and what is good for it; what is changed, the error and its 
         ({"over": "ec"}, TypeError, "over = 'ec': expected a dict"),
         ({"keep": {"ec": (0, 1)}}, ValueError, "keep: ec is a parameter"),
         ({"keep": {"margin": (2, 1)}}, ValueError, r"keep: margin = \(2, 1\): the lower bound first"),
+        (
+            {"keep": {"margin": 0.005}},
+            ValueError,
+            r"""keep: margin = 0.005: a limit is \(0.005, None\), \(None, 0.005\) or \("==", 0.005\)""",
+        ),
         ({"keep": ("margin", 0.005)}, TypeError, r"keep = \('margin', 0.005\): expected a dict"),
         ({"AB": None}, TypeError, "optimize: AB is missing"),
         ({"ec": 0.1}, ValueError, "ec is in over= and fixed"),

@@ -118,7 +118,7 @@ def test_a_motion_starts_at_the_speed_of_the_machine():
 def test_other_names_of_the_start_are_refused_with_the_right_one(given, meant):
     bodies = {k: v for k, v in SI.items() if k != "omega0"}
     for simulate, inputs in ((PRESS.simulate, {}), (dx.simulate, bodies)):
-        with pytest.raises(TypeError, match=f"has no input '{given}'; did you mean {meant}\\?"):
+        with pytest.raises(TypeError, match=f"has no input '{given}'; did you mean {meant}( or \\w+)?\\?$"):
             simulate(torque=50.0, t_end=0.02, I_crank=0.5, **{given: 1.0}, **inputs)
 
 
@@ -378,7 +378,7 @@ def test_what_is_no_slip():
         machine.evaluate("a_C", theta=20 * math.pi)
         machine.evaluate("a_C", theta=7.0)
         dx.Machine(machine, units="mm, deg").evaluate("a_C", theta=60)
-        dx.evaluate("a_C", theta=60, ec=0, AB=125, BC=350, omega0=1500)
+        dx.evaluate("a_C", theta=np.float64(60), ec=0, AB=np.array([125.0]), BC=np.float64(350), omega0=1e6)
         dx.scene(
             {
                 "outputs": ["Y"],

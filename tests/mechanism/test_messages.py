@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import desaxe as dx
+from desaxe.mechanism import slips
 from desaxe.mechanism.messages import amount, errors_in, listed, named
 from desaxe.mechanism.quantity_units import UnitSystem
 
@@ -140,6 +141,7 @@ SLIPS = {
 
 @pytest.mark.parametrize("told", SLIPS)
 def test_slips_of_motors_are_told(told):
+    slips.WARNED.clear()
     with pytest.warns(dx.UnitWarning, match=told) as warned:
         SLIPS[told]()
     assert [each.filename for each in warned] == [__file__]

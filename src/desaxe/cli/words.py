@@ -140,12 +140,13 @@ def _range(word: str, first: str, last: str, count: str) -> list[Any]:
 
 
 def _inputs_near(word: str) -> str:
-    """All input names, the one most similar to a wrong name first."""
+    """The inputs most similar to a wrong name, all of them if none is."""
     from ..mechanism.inputs import INPUTS
+    from ..mechanism.keywords import NEAREST
     from ..mechanism.spelling import did_you_mean
 
-    asked = did_you_mean(word, (*INPUTS, "branch"))
-    return f"{asked}{'There' if asked else 'there'} are {', '.join([*INPUTS, 'branch'])}"
+    allowed = *INPUTS, "branch"
+    return did_you_mean(word, allowed, NEAREST).strip() or f"there are {', '.join(allowed)}"
 
 
 def _refuse_parted(before: str, word: str) -> None:

@@ -8,7 +8,8 @@ from warnings import warn
 from ..mechanism.closed import TURN
 from ..mechanism.messages import amount
 from ..mechanism.quantity_units import UnitSystem
-from ..mechanism.slips import LARGEST, UnitWarning
+from ..mechanism.slips import UnitWarning
+from ..mechanism.typical import FARTHEST
 from ..support.shown import shown
 from ..units.system import Conversion
 from .columns import Column, column_of, places_and_values
@@ -18,7 +19,6 @@ from .made import table_over_stroke, table_over_theta, table_over_Y
 from .maker import Maker, naming
 
 LONGEST_PERIOD = 1e9
-FARTHEST = LARGEST["ec"]  # m: a position beyond is almost surely in another unit
 
 
 class MakeOverTheta(Maker):

@@ -13,6 +13,7 @@ from ..support.forks import IMPORTS
 from ..units.text import PLUS_MINUS, with_unit_of
 
 # Arguments that carry no unit of their own name: what they are about is said by their keys.
+EQUATION = "=="  # of a limit of `keep`
 BY_KEY = ("over", "keep", "changes", "sigma")
 POSITIONS = {"Y", "V_C", "a_C"}
 
@@ -47,6 +48,8 @@ def _converted(system: UnitSystem, name: str, value: Any) -> Any:
     """A number, array or pair of a named quantity in SI units; of a text that is no number with its unit."""
     conversion = system.find(name)
     if value is None or conversion is None:
+        return value
+    if isinstance(value, str) and value == EQUATION:
         return value
     if isinstance(value, str):
         first, *tolerance = PLUS_MINUS.split(value)

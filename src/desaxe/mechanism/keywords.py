@@ -7,6 +7,7 @@ from typing import ParamSpec, TypeVar
 from ..support.forks import IMPORTS
 from .inputs import INPUTS
 
+NEAREST = 3  # names that a message suggests
 P = ParamSpec("P")
 T = TypeVar("T")
 
@@ -19,16 +20,15 @@ def check_inputs(caller: str, given: Iterable[str], allowed: Sequence[str]) -> N
 
 
 def unknown_input(caller: str, name: str, allowed: Sequence[str]) -> TypeError:
-    """The error for an unknown input: the one that is most like it, and all there are."""
+    """The error for an unknown input: those that are most like it; all there are if none is."""
     with IMPORTS:
         from .spelling import did_you_mean
 
     if name == "as_quantity":
         way = f"a machine's {caller} has it, as in dx.Machine(**inputs).{caller}(..., as_quantity=True)"
         return TypeError(f"{caller}() has no as_quantity=: {way}")
-    asked = did_you_mean(name, allowed)
-    there = f"{'There' if asked else 'there'} are {', '.join(allowed)}"
-    return TypeError(f"{caller}() has no input {name!r}; {asked}{there}")
+    near = did_you_mean(name, allowed, NEAREST).strip() or f"there are {', '.join(allowed)}"
+    return TypeError(f"{caller}() has no input {name!r}; {near}")
 
 
 def with_known_keywords(function: Callable[P, T], caller: str = "") -> Callable[P, T]:

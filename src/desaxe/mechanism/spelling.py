@@ -27,15 +27,20 @@ WORDS = {
     ),
     "angular_acceleration": ("alpha",),
     "acceleration": ("a_C", "alpha"),
-    "velocity": ("V_C",),
-    **dict.fromkeys(("position", "displacement"), ("Y",)),
+    **dict.fromkeys(("velocity", "v"), ("V_C",)),
+    "a": ("a_C", "alpha"),
+    **dict.fromkeys(("jerk", "j"), ("j_C",)),
+    **dict.fromkeys(("position", "displacement", "x"), ("Y",)),
+    **dict.fromkeys(("rod_angle", "beta"), ("phi",)),
+    **dict.fromkeys(("side_force", "normal_force", "guide_force"), ("N_C",)),
+    "power": ("power_in",),
     **dict.fromkeys(("friction", "friction_coefficient"), ("mu",)),
     **dict.fromkeys(("crank_mass", "mass_crank"), ("m_crank",)),
     **dict.fromkeys(("rod_mass", "mass_rod"), ("m_rod",)),
     **dict.fromkeys(("slider_mass", "mass_slider", "piston_mass", "m_piston", "mass", "m"), ("m_slider",)),
     **dict.fromkeys(("force", "load"), ("F_Y",)),
     **dict.fromkeys(("gravity", "g"), ("g_Y",)),
-    **dict.fromkeys(("drive", "moment", "t_in"), ("torque",)),
+    **dict.fromkeys(("drive", "moment", "t_in", "torque"), ("torque", "T_in")),
     **dict.fromkeys(("duration", "time"), ("t_end",)),
 }
 
@@ -60,7 +65,7 @@ def meant(word: str, allowed: Iterable[str], most: int = 1) -> list[str]:
     return list(dict.fromkeys(found))[:most]
 
 
-def did_you_mean(word: str, allowed: Iterable[str]) -> str:
+def did_you_mean(word: str, allowed: Iterable[str], most: int = 1) -> str:
     """The question "Did you mean ...?" with a space after it; empty if no name is similar."""
-    near = meant(word, allowed)
-    return f"did you mean {near[0]}? " if near else ""
+    *others, last = meant(word, allowed, most) or [""]
+    return f"did you mean {', '.join(others)}{' or ' if others else ''}{last}? " if last else ""

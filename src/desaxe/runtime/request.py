@@ -67,6 +67,8 @@ def request(
 
     known   the definitions that names have; those of this process at this moment without
     """
+    if not names:
+        raise ValueError(f"names = {names!r}: name at least one quantity, such as 'a_C'")
     check_common(given, branch)
     known = known or register()
     state = given.get("omega") is not None

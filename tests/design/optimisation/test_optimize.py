@@ -123,9 +123,9 @@ def test_equal_and_upper_limits():
         "ec": 0.05,
         "omega0": 157.08,
     }
-    best = dx.optimize(keep={"stroke": 0.25, "max_pressure_angle": (None, "30 deg")}, **problem)
+    best = dx.optimize(keep={"stroke": ("==", 0.25), "max_pressure_angle": (None, "30 deg")}, **problem)
     assert dx.events(ec=0.05, AB=best["AB"], BC=best["BC"])["stroke"] == pytest.approx(0.25, rel=1e-9)
-    more = dx.optimize(keep={"stroke": 0.2501, "max_pressure_angle": (None, "30 deg")}, **problem)
+    more = dx.optimize(keep={"stroke": ("==", 0.2501), "max_pressure_angle": (None, "30 deg")}, **problem)
     assert best["multipliers"]["stroke"] == pytest.approx((best["value"] - more["value"]) / 1e-4, rel=1e-2)
     fast = dx.optimize(
         maximize="time_ratio", over={"ec": (0, 0.2)}, keep={("absmax", "V_C"): (None, 25.0)}, **A
@@ -159,7 +159,9 @@ def test_inside_of_all_limits():
     limits = dx.synthesize(stroke=0.1, time_ratio=1.3, max_pressure_angle=0.1)["limits"]
     wanted, _ = limits["max_pressure_angle"]
     over = {"ec": (0.0, 0.2), "AB": (0.01, 0.1), "BC": (0.05, 0.4)}
-    best = dx.optimize(minimize="max_pressure_angle", over=over, keep={"stroke": 0.1, "time_ratio": 1.3})
+    best = dx.optimize(
+        minimize="max_pressure_angle", over=over, keep={"stroke": ("==", 0.1), "time_ratio": ("==", 1.3)}
+    )
     assert best["value"] == pytest.approx(wanted, rel=1e-10)
     assert set(best["active"]) == {"stroke", "time_ratio"}
 

@@ -9,15 +9,17 @@ from ...evaluation.reductions.own_measure import OwnMeasure
 from ...evaluation.under_loads.loaded import loads_of
 from ...mechanism.inputs import INPUTS, Input
 from ...mechanism.keywords import check_inputs
-from ...mechanism.messages import amount, message_of, named
+from ...mechanism.messages import Message, NamedValue, amount, message_of, named
 from ...mechanism.names import LENGTHS
-from ...mechanism.quantity_units import unit_of
+from ...mechanism.quantity_units import UnitSystem, unit_of
 from ...mechanism.read import read
 from ...support.deadline import Deadline
 from ...support.shown import shown
 from ..measures import Measure, checked, is_named, text_of
 from .kinks import sides_of
 from .problem import EQUAL, LOWER, UPPER, Limit, SmoothTerm, Space
+
+EQUATION = "=="  # in place of a lower end
 
 
 class Goal(NamedTuple):
@@ -107,11 +109,7 @@ def limits_of(keep: Mapping[Any, Any]) -> list[Limit]:
         if key in INPUTS:
             raise ValueError(f"keep: {key} is a parameter; its bounds go into over=")
         measure = checked(key)
-        pair = bounds if isinstance(bounds, (tuple, list)) else (bounds, bounds)
-        if len(pair) != 2:
-            ends = f"keep: {text_of(measure)} = " + amount(measure, bounds)
-            raise ValueError(ends + ": expected a pair (low, high) or a number")
-        low, high = (None if end is None else _in_si(measure, end) for end in pair)
+        low, high = _ends(measure, bounds)
         if low is not None and high is not None and low >= high:
             if low > high:
                 ends = f"keep: {text_of(measure)} = " + amount(measure, (low, high), "g")
@@ -123,6 +121,27 @@ def limits_of(keep: Mapping[Any, Any]) -> list[Limit]:
         if high is not None:
             limits += upper_limits(key, measure, high)
     return limits
+
+
+class AsArgument(NamedValue):
+    """A number as it is written in a call: a text where it has a unit."""
+
+    def text(self, system: UnitSystem | None = None) -> str:
+        """The number in the units of a system; in SI units without."""
+        text = super().text(system)
+        return repr(text) if " " in text else text
+
+
+def _ends(measure: Measure, bounds: Any) -> tuple[float | None, float | None]:
+    """The ends of a limit, None where it has none; both are the value of an equation."""
+    if not isinstance(bounds, (tuple, list)) or len(bounds) != 2:
+        number = Message(AsArgument(measure, bounds))
+        rule = ": a limit is (" + number + ", None), (None, " + number + ') or ("==", ' + number + ")"
+        raise ValueError(f"keep: {text_of(measure)} = " + amount(measure, bounds) + rule)
+    if isinstance(bounds[0], str) and bounds[0] == EQUATION:
+        bounds = bounds[1], bounds[1]
+    low, high = (None if end is None else _in_si(measure, end) for end in bounds)
+    return low, high
 
 
 def _in_si(measure: Measure, value: Any) -> float:

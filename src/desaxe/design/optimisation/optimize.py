@@ -41,8 +41,8 @@ def optimize(
                         that gives its value and a dict of its derivatives. Several of them, or both, ask
                         for the Pareto front: designs of which none is better than another in everything
     over                dict parameter -> (low, high): what may vary, lengths, speed or masses
-    keep                dict of the same names -> (low, high), None where there is no limit; a number is to be
-                        met exactly. The crank always turns fully: margin >= 0
+    keep                dict of the same names -> (low, high), None where there is no limit, or ("==", value).
+                        The crank always turns fully: margin >= 0
     fixed               all other parameters, as in `evaluate`; F_X and F_Y may vary with the motion
     starts, seed        how many local searches, from the best of a scan of the space
     timeout             seconds after which it ends with a TimeoutError; None for no limit

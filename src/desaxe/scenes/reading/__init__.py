@@ -7,5 +7,5 @@ spread     evenly spaced values of a range, each rounded once
 printed    values as a paper prints them, compared digit by digit
 loads      loads of a scene: tables and files
 needs      the inputs that quantities need
-written    the units of the texts of a scene, and slips of its plain numbers
+written    what a scene has in writing: its inputs, and the units of its texts
 """

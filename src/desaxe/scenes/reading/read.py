@@ -1,6 +1,5 @@
 """From what is written in a scene file to inputs in SI units and names that exist."""
 
-import warnings
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
@@ -20,7 +19,7 @@ from ...loads.resolve import settled
 from ...mechanism.inputs import INPUTS
 from ...mechanism.own import Definition, using
 from ...mechanism.quantity_units import UnitSystem
-from ...mechanism.slips import UnitWarning, slips_of_forces
+from ...mechanism.slips import warn_of_slips
 from ...runtime.accuracy import accuracy_of
 from ...scenes import schema
 from ...support.memory import bytes_of
@@ -32,7 +31,7 @@ from .loads import require_units_of_file, varying, without_objects
 from .needs import require_for_grid, require_known
 from .requested import checks_of, peak_of, picture_of
 from .values import Value, values_of
-from .written import slips_of
+from .written import written_inputs
 
 PICTURES = (".png", ".svg", ".pdf")
 DATA = (".nc", ".zarr", ".csv", ".xlsx", ".npz")
@@ -80,7 +79,7 @@ def _content(
     own: tuple[Definition, ...],
 ) -> Content:
     inputs = _inputs(data, file, folder, units)
-    _warn(slips_of_forces(inputs, units))
+    warn_of_slips(written_inputs(data), units, 5, inputs)
     branch = file.mechanism.branch
     if "omega" in inputs and "omega0" in inputs:
         raise SceneError(
@@ -145,18 +144,11 @@ def _storage(
 
 
 def _units(data: Mapping[str, Any]) -> UnitSystem:
-    """The units of the scene; a warning where a plain number is almost surely meant in another one."""
+    """The units of the scene."""
     try:
-        units = UnitSystem.read(data.get("units"))
+        return UnitSystem.read(data.get("units"))
     except (ValueError, TypeError) as error:
         raise SceneError(str(error)) from None
-    _warn(slips_of(data, units))
-    return units
-
-
-def _warn(slips: list[str]) -> None:
-    if slips:
-        warnings.warn(f"almost surely a slip: {'; '.join(slips)}", UnitWarning, stacklevel=5)
 
 
 def _defined(tables: Mapping[str, Any]) -> tuple[Definition, ...]:

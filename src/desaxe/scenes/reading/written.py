@@ -1,11 +1,11 @@
-"""Units in the texts of a scene, and slips of units in its plain numbers."""
+"""The inputs of a scene as they are written, and the units of its texts."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 from ...mechanism.inputs import INPUTS
 from ...mechanism.quantity_units import SI, UnitSystem
-from ...mechanism.slips import slip
+from ...mechanism.ranges import Between
 from ...units.system import DIMENSIONS
 from ...units.text import split_quantity
 from ..schema import SECTIONS
@@ -21,15 +21,13 @@ SHARED = {
 RATES = {name: DIMENSIONS[name] for name in ("velocity", "acceleration", "jerk")}
 
 
-def slips_of(data: Mapping[str, Any], units: UnitSystem) -> list[str]:
-    """Warnings about plain numbers of the scene that are almost surely slips of a unit."""
-    found = []
-    for section in SECTIONS:
-        values = data.get(section)
-        for name, value in values.items() if isinstance(values, Mapping) else ():
-            ends = [value.get(end) for end in ENDS[:2]] if isinstance(value, Mapping) else [value]
-            found += [told for end in ends if (told := slip(str(name), end, units))]
-    return found
+def written_inputs(data: Mapping[str, Any]) -> dict[str, Any]:
+    """The inputs as the scene has them, of a range its ends: what slips of units are looked for in."""
+    pairs = [pair for section in SECTIONS for pair in data.get(section, {}).items()]
+    return {
+        name: Between(value.get("start"), value.get("stop")) if isinstance(value, Mapping) else value
+        for name, value in pairs
+    }
 
 
 def units_written(data: Mapping[str, Any]) -> UnitSystem:

@@ -1,0 +1,40 @@
+"""Public functions of `desaxe`: those of its rooms, which warn of slips of units in their keywords."""
+
+from collections.abc import Callable
+from functools import wraps
+from typing import ParamSpec, TypeVar
+
+from ..support.forks import IMPORTS
+from .typical import FORCES, KINDS
+
+P = ParamSpec("P")
+T = TypeVar("T")
+# Numbers up to which a function need not look closer; those of offsets and forces depend on the lengths.
+HARMLESS = {name: kind.most for name, kind in KINDS.items()} | {"ec": 0.3, "F_X": 1e4, "F_Y": 1e4}
+
+
+def warning(function: Callable[P, T]) -> Callable[P, T]:
+    """Make the public function of `desaxe`, which warns of slips in its keywords: once for each kind."""
+
+    @wraps(function)
+    def public(*args: P.args, **inputs: P.kwargs) -> T:
+        for name, value in inputs.items():
+            if type(value) is float or type(value) is int:
+                harmless = name not in HARMLESS or -HARMLESS[name] <= value <= HARMLESS[name]
+            else:
+                harmless = name not in FORCES and not isinstance(value, (str, tuple))
+            if not harmless:
+                with IMPORTS:
+                    from .slips import warn_once
+
+                warn_once(inputs)
+                break
+        try:
+            return function(*args, **inputs)
+        except TypeError as error:
+            if args and "positional argument" in str(error):
+                error.args = (f"{error}; inputs are given by name, such as theta=1.0",)
+            raise
+
+    public.__module__ = "desaxe"
+    return public
