@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from desaxe.plot.save import save
-from desaxe.support.files import write_text
 from desaxe.support.progress import progress_bar
+from desaxe.support.written import write_whole
 
 from .picture import draw
 from .report import PICTURE, by_family, overview, report, share_of, ulp_of
@@ -38,6 +38,7 @@ def text(found: Audit) -> str:
 def write(found: Audit, folder: Path) -> list[Path]:
     """accuracy.md and accuracy.png in a folder, which is made if need be."""
     page, picture = folder / PAGE, folder / PICTURE
-    write_text(page, report(found))
+    with write_whole(page, overwrite=True) as staged:
+        staged.write_text(report(found), encoding="utf-8")
     save(draw(found), picture, dpi=130)
     return [page, picture]

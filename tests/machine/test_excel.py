@@ -89,7 +89,7 @@ def test_texts_stay_texts_and_numbers_without_a_value_are_told(tmp_path):
 def test_places_and_complaints(tmp_path, monkeypatch):
     path = tmp_path / "a.xlsx"
     path.write_text("mine")
-    with pytest.raises(FileExistsError, match="not, or no longer, what desaxe wrote"):
+    with pytest.raises(FileExistsError, match="exists and was not written by desaxe"):
         dx.to_excel({"a": 1.0}, path)
     assert path.read_text() == "mine"
     dx.to_excel({"a": 1.0}, path, overwrite=True)

@@ -9,7 +9,7 @@ from collections import Counter
 from pathlib import Path
 from random import Random
 
-from desaxe.support.files import write_text
+from desaxe.support.written import write_whole
 from tests.reliability.rig import CRASHED, OUTCOMES, RIGHT, Trial, Verdict
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "reliability.md"
@@ -40,7 +40,8 @@ def main() -> int:
             count = max(1, round(kind.full * options.share))
             rows.append((kind.what, repeated(kind, count, options.seed, Path(room))))
     if not (options.only or options.check):
-        write_text(PAGE, HEAD + table(rows) + foot())
+        with write_whole(PAGE, overwrite=True) as staged:
+            staged.write_text(HEAD + table(rows) + foot(), encoding="utf-8")
         print(f"wrote {PAGE}")
     return int(any(set(counts) - {RIGHT} for _, counts in rows))
 

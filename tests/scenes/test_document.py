@@ -195,7 +195,7 @@ def test_places_and_complaints(tmp_path, monkeypatch):
     path = tmp_path / "a.html"
     path.write_text("mine")
     monkeypatch.setattr("desaxe.machine.report.compute", lambda *_: pytest.fail("something was computed"))
-    with pytest.raises(FileExistsError, match="not, or no longer, what desaxe wrote"):
+    with pytest.raises(FileExistsError, match="exists and was not written by desaxe"):
         PRESS.report(path)
     with pytest.raises(ValueError, match=r"a\.pdf: a report is written as \.html or \.md"):
         PRESS.report(tmp_path / "a.pdf")
@@ -238,7 +238,7 @@ def test_the_command_line(tmp_path, monkeypatch, capsys):
     assert "Largest magnitude of T_in" in said
     Path("out/page.html").write_text("mine")
     assert main(words) == 2
-    assert "out/page.html: this is not, or no longer, what desaxe wrote" in capsys.readouterr().err
+    assert "out/page.html exists and was not written by desaxe" in capsys.readouterr().err
     assert main([*words, "--overwrite"]) == 0
     for bad, told in (
         (["--report", "a.txt"], "a.txt: a report is written as .html or .md"),

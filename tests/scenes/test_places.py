@@ -1,9 +1,10 @@
 """Output files of a run: checked first, never over a foreign file, never at the cost of the report."""
 
 import os
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import desaxe as dx
@@ -56,7 +57,7 @@ def test_another_file_stays_and_nothing_is_computed(foreign, nothing_is_computed
     Path(foreign).write_text(FOREIGN)
     assert main(["run", scene_file("a.csv", "a.png")]) == 2
     out, err = capsys.readouterr()
-    assert f"{foreign}: this is not, or no longer, what desaxe wrote" in err
+    assert f"{foreign} exists and was not written by desaxe" in err
     assert out == ""
     assert sorted(os.listdir()) == sorted([foreign, "press.toml"])
     assert Path(foreign).read_text() == FOREIGN
@@ -225,7 +226,7 @@ def test_what_was_generated_and_edited_is_left_alone(make, name, file):
     scene = dx.scene({**SMALL, "peak": []})
     Path(file).parent.mkdir(exist_ok=True)
     Path(file).write_text(FOREIGN)
-    with pytest.raises(FileExistsError, match="no longer, what desaxe wrote"):
+    with pytest.raises(FileExistsError, match="exists and was not written by desaxe"):
         make(scene, name)
     make(scene, name, overwrite=True)
     first = Path(file).read_bytes()
@@ -235,8 +236,67 @@ def test_what_was_generated_and_edited_is_left_alone(make, name, file):
     for place in (len(first) // 50, len(first) // 2, len(first) - 3):
         edited = first[:place] + b"0" + first[place:]
         Path(file).write_bytes(edited)
-        with pytest.raises(FileExistsError, match="no longer, what desaxe wrote; overwrite=True"):
+        with pytest.raises(FileExistsError, match="or was edited since; use --overwrite"):
             make(scene, name)
         assert Path(file).read_bytes() == edited
     make(scene, name, overwrite=True)
     assert Path(file).read_bytes() == first
+
+
+PRESS = dx.Machine(ec=0.01, AB=0.125, BC=0.35, omega0=157.0)
+LOADED = PRESS.replace(F_Y=dx.over_theta(np.linspace(0.0, 6.0, 40), np.linspace(0.0, 9.0, 40), kind="linear"))
+
+
+def _picture(path, overwrite):
+    dx.plot.save(PRESS.plot("a_C"), path, dpi=20, overwrite=overwrite)
+
+
+@cache
+def _movie():
+    return PRESS.plot.animate("a_C", frames=2)
+
+
+def _animation(path, overwrite):
+    dx.plot.save(_movie(), path, dpi=20, overwrite=overwrite)
+
+
+def _answer(path, overwrite):
+    words = ["evaluate", "a_C", "theta=0,1", *["ec=0", "AB=0.1", "BC=0.3", "omega0=1"], "-o", path]
+    if main([*words, *(["--overwrite"] if overwrite else [])]):
+        raise FileExistsError
+
+
+ROADS = {
+    **dict.fromkeys(["a.png", "a.svg", "a.pdf", "a.eps"], _picture),
+    **dict.fromkeys(["a.gif", "a.html"], _animation),
+    **dict.fromkeys(["a.csv", "a.json"], _answer),
+    "a.toml": lambda path, overwrite: PRESS.to_scene(path, overwrite=overwrite),
+    "b_F_Y.csv": lambda path, overwrite: LOADED.to_scene("b.toml", overwrite=overwrite),
+    "a.xlsx": lambda path, overwrite: dx.to_excel(
+        PRESS.evaluate(["Y"], theta=1.0), path, overwrite=overwrite
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ROADS)
+def test_every_output_bears_a_mark_and_no_other_file_is_lost(name):
+    """A measurement or a hand-written scene of the name stays; what was written is replaced."""
+    Path(name).write_text(FOREIGN)
+    with pytest.raises(FileExistsError):
+        ROADS[name](name, overwrite=False)
+    assert Path(name).read_text() == FOREIGN
+    assert sorted(os.listdir()) == [name]
+    ROADS[name](name, overwrite=True)
+    ROADS[name](name, overwrite=False)
+    if name != "a.xlsx":  # whose parts are compressed
+        Path(name).write_bytes(Path(name).read_bytes().replace(b"desaxe", b"others"))
+        with pytest.raises(FileExistsError):
+            ROADS[name](name, overwrite=False)
+
+
+def test_a_scene_that_was_edited_is_not_replaced(tmp_path):
+    PRESS.to_scene("a.toml")
+    Path("a.toml").write_text(Path("a.toml").read_text().replace("125", "126"))
+    with pytest.raises(FileExistsError, match=r"a\.toml exists and was not written by desaxe, or was edited"):
+        PRESS.to_scene("a.toml")
+    assert dx.Machine.read("a.toml")["AB"] == 0.126

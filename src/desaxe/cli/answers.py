@@ -42,12 +42,22 @@ def written(answer: Any, options: argparse.Namespace) -> None:
 
         write(path, answer, {}, options.overwrite)
     elif path.suffix in TEXTS:
-        from ..support.files import write_text
+        from ..support.written import write_whole
 
-        write_text(path, json_text(answer) + "\n" if path.suffix == ".json" else csv_text(answer))
+        with write_whole(path, options.overwrite) as staged:
+            staged.write_text(_file_text(answer, path.suffix), encoding="utf-8", newline="\n")
     else:
         raise UsageError(f"-o {path}: this answer is no table of arrays; name a .json or .csv file")
     print(f"{path}: written")
+
+
+def _file_text(answer: Any, suffix: str) -> str:
+    """The text of a file, with its source, which is its mark."""
+    from ..evaluation.labels import source
+
+    if suffix == ".csv":
+        return f"# {source()}\n{csv_text(answer)}"
+    return json.dumps({"source": source(), **json.loads(json_text(answer))}, indent=2) + "\n"
 
 
 def json_text(answer: Any) -> str:

@@ -60,10 +60,10 @@ def _fit(options: argparse.Namespace) -> int:
     from ..design.fit.fit import fit
     from ..evaluation.in_units import in_units
     from ..scenes.scene import scene
-    from ..support.written import replacing_ours, require_place
+    from ..support.written import require_path
 
     if options.picture:
-        require_place(Path(options.picture), options.overwrite)
+        require_path(Path(options.picture), options.overwrite)
     whole = scene(options.scene)
     known = whole.content
     over = dict(_unknown(word, known.inputs, known.units) for word in options.over)
@@ -85,8 +85,7 @@ def _fit(options: argparse.Namespace) -> int:
     if options.picture:
         from ..plot.save import save
 
-        with replacing_ours(Path(options.picture), options.overwrite) as staged:
-            save(told.plot(), staged)
+        save(told.plot(), options.picture, overwrite=options.overwrite)
     return 0
 
 

@@ -143,10 +143,10 @@ def _explore(options: argparse.Namespace) -> int:
     from ..scenes.explorer.content import left_out_text
     from ..scenes.explorer.explore import content_of
     from ..scenes.explorer.write import write_page
-    from ..support.written import require_place
+    from ..support.written import require_path
 
     place = Path(options.file)
-    require_place(place, options.overwrite)
+    require_path(place, options.overwrite)
     found = content_of(options.scene, options.names.split(",") if options.names else None)
     print(printable(write_page(found, place, options.overwrite)))
     left = left_out_text(found)

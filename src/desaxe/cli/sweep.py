@@ -90,11 +90,11 @@ def _client(options: argparse.Namespace) -> Iterator[Any]:
 
 def _require_netcdf(path: Path, overwrite: bool) -> None:
     """Fail before the sweep where the NetCDF file could not be written."""
-    from ..support.written import require_place
+    from ..support.written import require_path
 
     if path.suffix != ".nc":
         raise UsageError(f"--netcdf {printable(path)}: its name must end in .nc")
-    require_place(path, overwrite)
+    require_path(path, overwrite)
 
 
 def _write_netcdf(dataset: Any, path: Path, overwrite: bool) -> None:

@@ -15,7 +15,7 @@ from ..scenes.stores.workbook import Sheet, require_room, sheets_of, write_workb
 from ..support.answer import Answer
 from ..support.files import as_path
 from ..support.shown import printable, shown
-from ..support.written import replacing_ours
+from ..support.written import write_whole
 
 
 def to_excel(
@@ -42,7 +42,7 @@ def to_excel(
     if place.suffix.lower() != ".xlsx":
         raise ValueError(f"{printable(path)}: a workbook is written as .xlsx")
     sheets = _sheets(data, units)
-    with replacing_ours(place, overwrite) as staged:
+    with write_whole(place, overwrite) as staged:
         write_workbook(staged, sheets)
     return place
 

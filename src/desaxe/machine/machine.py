@@ -291,14 +291,16 @@ class Machine(Mapping[str, Any]):
 
         return write_report(self, path, outputs, tolerances or {}, fluctuation, overwrite, more)
 
-    def to_scene(self, path: str | PathLike[str], outputs: Any = OUTPUTS, **more: Any) -> Any:
+    def to_scene(
+        self, path: str | PathLike[str], outputs: Any = OUTPUTS, *, overwrite: bool = False, **more: Any
+    ) -> Any:
         """Write the scene of this machine as a TOML file for `Machine.read` and `desaxe run`; its path.
 
         Other arguments are those of `scene`. The file stands for the same doubles; tables of loads stand in
         it, long ones in a CSV file beside it. Raises TypeError for a load that is a function, which is no
-        data.
+        data, and FileExistsError for a file that desaxe did not write or that was edited, unless `overwrite`.
         """
-        return write_scene(self, path, outputs, more)
+        return write_scene(self, path, outputs, overwrite, more)
 
     def __getitem__(self, name: str) -> Any:
         if name not in self._inputs:

@@ -15,7 +15,8 @@ from ..mechanism.own import Definition
 from ..mechanism.quantity_units import UnitSystem
 from ..scenes.scene import scene
 from ..scenes.schema import SECTIONS, SceneError
-from ..support.files import check_target, write_text
+from ..support.version import version
+from ..support.written import UNSEALED, require_path, sealed, write_whole
 from ..units.parse import exact
 from .load_tables import load_table, motor_table
 
@@ -46,22 +47,25 @@ def scene_of(machine: Any, outputs: Any, more: Mapping[str, Any]) -> Any:
     return scene(_data(machine, outputs, more, split(machine)[1]))
 
 
-def write_scene(machine: Any, path: str | PathLike[str], outputs: Any, more: Mapping[str, Any]) -> Path:
+def write_scene(
+    machine: Any, path: str | PathLike[str], outputs: Any, overwrite: bool, more: Mapping[str, Any]
+) -> Path:
     """Write the scene of a machine as TOML, once it is known to be right, and its long tables beside it."""
     place = Path(path)
     machine, more = _with_inputs(machine, more)
     loads = split(machine)[1]
     scene(_data(machine, outputs, more, loads))
     tables = {name: load_table(name, load, place, machine.units) for name, load in loads.items()}
-    for file in (place, *(table.file for table in tables.values() if table.file is not None)):
-        check_target(file)
-    for table in tables.values():
-        if table.file is not None:
-            write_text(table.file, table.text)
+    texts = {table.file: table.text for table in tables.values() if table.file is not None}
     if "steady" in more:
         more = {**more, "steady": {name: motor_table(value) for name, value in more["steady"].items()}}
     data = _data(machine, outputs, more, {name: table.data for name, table in tables.items()})
-    write_text(place, _toml(data))
+    for file in (*texts, place):
+        require_path(file, overwrite)
+    for file, text in {**texts, place: _toml(data)}.items():
+        with write_whole(file, overwrite) as staged:
+            marked = sealed(f"# desaxe {version()}, {UNSEALED}\n{text}")
+            staged.write_text(marked, encoding="utf-8", newline="\n")
     return place
 
 

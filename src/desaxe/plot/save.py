@@ -5,23 +5,31 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from ..support.files import replacing
 from ..support.forks import IMPORTS
-from ..support.written import SIGNED
+from ..support.written import GIF_COMMENT, PAGE, SIGNED, write_whole
 
 
-def save(figure: Any, path: str | PathLike[str], dpi: float | None = None, **options: Any) -> Path:
+def save(
+    figure: Any,
+    path: str | PathLike[str],
+    dpi: float | None = None,
+    *,
+    overwrite: bool = False,
+    **options: Any,
+) -> Path:
     """Write a figure or animation to a file, in the format of its suffix; missing folders are created.
 
     figure  a matplotlib Figure or what a function of `desaxe.plot` returns (.png, .svg, .pdf), or an
             animation (.gif, .html)
     dpi     dots per inch; by default 150, and 80 of an animation
+    overwrite  replace a file that desaxe did not write
     options  of matplotlib's `savefig`, such as `transparent=True`; an animation's `save`, such as `writer`
 
-    A file appears whole or not at all. Returns its path.
+    A file appears whole or not at all. Returns its path. Raises FileExistsError for a file without the mark
+    that pictures of desaxe have in their metadata (.png, .svg, .pdf, .ps, .eps, .gif, .html).
     """
     target = Path(path)
-    with replacing(target) as staged:
+    with write_whole(target, overwrite) as staged:
         if hasattr(figure, "to_jshtml"):
             _animation(figure, staged, dpi or 80.0, options)
         else:
@@ -55,6 +63,8 @@ def _animation(animation: Any, path: Path, dpi: float, options: Mapping[str, Any
         animation.save(path, writer=PillowWriter(fps=1000.0 / animation._interval), dpi=dpi)
     elif path.suffix == ".html":
         with rc_context({"savefig.dpi": dpi, "animation.embed_limit": 200.0}):
-            path.write_text(animation.to_jshtml(), encoding="utf-8")
+            path.write_text(f"{PAGE}\n{animation.to_jshtml()}", encoding="utf-8")
     else:
         raise ValueError(f"{path.suffix!r}: an animation is written as .gif or .html")
+    if path.suffix == ".gif":
+        path.write_bytes(path.read_bytes().removesuffix(b";") + GIF_COMMENT + b";")

@@ -35,33 +35,6 @@ _KINDS = {
 }
 
 
-@contextmanager
-def replacing(target: Path, mode: int | None = None) -> Iterator[Path]:
-    """Yield a temporary path; the file written there replaces `target` when the block succeeds.
-
-    target  a file, or what does not exist yet; its folder is made. A link is replaced, not followed.
-    mode    permissions; by default those of the file that is replaced, else those of a new file
-
-    Raises ValueError where `target` is not a regular file, OSError where it cannot be written.
-    """
-    check_target(target)
-    with staging(target.parent) as folder:
-        staged = folder / target.name
-        yield staged
-        swap_in(staged, target, mode)
-
-
-def write_text(target: Path, text: str) -> None:
-    """Write a text, in UTF-8, whole or not at all."""
-    write_bytes(target, text.encode())
-
-
-def write_bytes(target: Path, data: bytes, mode: int | None = None) -> None:
-    """Write a file whole or not at all."""
-    with replacing(target, mode) as staged:
-        staged.write_bytes(data)
-
-
 def as_path(name: str, value: Any) -> Path:
     """An argument as a path; TypeError or ValueError that names it."""
     if not isinstance(value, (str, os.PathLike)):
@@ -204,12 +177,10 @@ def _restore(stray: Path) -> None:
                 os.rename(path, stray.parent / path.name)
 
 
-def swap_in(staged: Path, target: Path, mode: int | None = None) -> None:
+def swap_in(staged: Path, target: Path) -> None:
     """Replace a file or folder by a staged one; the old one stays in the staging folder."""
-    if mode is None and staged.is_file() and target.is_file() and not target.is_symlink():
-        mode = stat.S_IMODE(target.stat().st_mode)
-    if mode is not None:
-        staged.chmod(mode)
+    if staged.is_file() and target.is_file() and not target.is_symlink():
+        staged.chmod(stat.S_IMODE(target.stat().st_mode))
     for path in (staged, *staged.rglob("*")) if staged.is_dir() else (staged,):
         _flush(path)
     if not staged.is_dir():

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from difflib import unified_diff
 from pathlib import Path
 
-from .written import replacing_ours, require_place
+from .written import require_path, write_whole
 
 
 class Generated:
@@ -36,12 +36,12 @@ class Generated:
     def write(self, overwrite: bool) -> None:
         """Write all of them, once it is known that each may be."""
         for name in self.texts:
-            require_place(self.folder / name, overwrite)
+            require_path(self.folder / name, overwrite)
         for name, text in self.texts.items():
             if text is None:
                 (self.folder / name).unlink(missing_ok=True)
                 continue
-            with replacing_ours(self.folder / name, overwrite) as staged:
+            with write_whole(self.folder / name, overwrite) as staged:
                 staged.write_bytes(text.encode())
 
     def summary(self) -> list[str]:

@@ -12,17 +12,21 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from .files import check_target, kind_of, replacing, require_writable
+from .files import check_target, kind_of, require_writable, staging, swap_in
 from .forks import imported
 from .shown import printable
 
 UNSEALED = "checksum 0000000000000000"  # the place for it in a text that is generated
 _SEAL = re.compile(rb"\bchecksum [0-9a-f]{16}\b")
-SIGNED = {".png": "Software", ".svg": "Creator", ".pdf": "Creator"}  # pictures, and the field with the mark
+# Pictures, and the field with the mark.
+SIGNED = {".png": "Software", **dict.fromkeys((".svg", ".pdf", ".ps", ".eps"), "Creator")}
+PAGE, GIF_COMMENT = '<meta name="generator" content="desaxe">', b"!\xfe\x06desaxe\0"
 ZIPPED = ("docProps/core.xml", "modelDescription.xml")  # of a workbook, of an FMU
 STORED = ("zarr.json", ".zattrs", ".zmetadata")
-# Of a table and of each kind of picture.
-_MARK = re.compile(rb"\A# desaxe |Software\0desaxe\b|<dc:title>desaxe</dc:title>|/Creator \(desaxe\)")
+_MARK = re.compile(  # of a table or a scene, of JSON, of .png, .svg, .pdf, .ps, .gif and .html
+    rb"\A# desaxe |\A\{\s*\"source\": \"desaxe |Software\0desaxe\b|<dc:title>desaxe</dc:title>"
+    rb"|/Creator \(desaxe\)|%%Creator: desaxe\b|" + re.escape(GIF_COMMENT) + b"|" + PAGE.encode()
+)
 
 
 def sealed(text: str) -> str:
@@ -83,26 +87,32 @@ def require_ours(path: Path, overwrite: bool) -> None:
     if overwrite or not os.path.lexists(path) or (path.exists() and is_ours(path)):
         return
     raise FileExistsError(
-        f"{printable(path)}: this is not, or no longer, what desaxe wrote; "
-        "overwrite=True (--overwrite) replaces it"
+        f"{printable(path)} exists and was not written by desaxe, or was edited since; "
+        "use --overwrite (overwrite=True)"
     )
 
 
-def require_place(path: Path, overwrite: bool) -> None:
-    """An error where `replacing_ours` would have one: a way to fail before anything is computed."""
+def require_path(path: Path, overwrite: bool) -> None:
+    """An error where `write_whole` would have one: a way to fail before anything is computed."""
     check_target(path)
     require_ours(path, overwrite)
     require_writable(path)
 
 
 @contextmanager
-def replacing_ours(target: Path, overwrite: bool = False) -> Iterator[Path]:
-    """Yield a path to write, which takes the place of `target` as `support.files.replacing` does.
+def write_whole(target: Path, overwrite: bool = False) -> Iterator[Path]:
+    """Yield a temporary path; the file written there takes the place of `target` when the block succeeds.
 
-    Raises FileExistsError for what is not ours, also where it appeared meanwhile.
+    target     a file, or what does not exist yet; its folder is made. A link is replaced, not followed
+    overwrite  replace a file that desaxe did not write
+
+    The file is on the disk before it is renamed. Raises ValueError where `target` is not a regular file,
+    OSError where it cannot be written, FileExistsError for what is not ours, also if it appeared meanwhile.
     """
     check_target(target)
     require_ours(target, overwrite)
-    with replacing(target) as staged:
+    with staging(target.parent) as folder:
+        staged = folder / target.name
         yield staged
         require_ours(target, overwrite)
+        swap_in(staged, target)

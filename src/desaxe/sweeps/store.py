@@ -20,12 +20,13 @@ from numpy.typing import NDArray
 from ..evaluation.labels import import_xarray
 from ..evaluation.plan import Part
 from ..support.extras import explained
-from ..support.files import kind_of, remove_strays, require_writable, staging, swap_in, write_bytes
+from ..support.files import kind_of, remove_strays, require_writable, staging, swap_in
 from ..support.forks import IMPORTS
 from ..support.locks import locked
 from ..support.memory import size_text
 from ..support.shown import printable
 from ..support.signals import put_off
+from ..support.written import write_whole
 from .request import Sweep, differences
 
 with put_off(), explained("a sweep"):
@@ -218,7 +219,8 @@ def finish(root: Path) -> None:
     group = json.loads((root / METADATA).read_text(encoding="utf-8"))
     if group["attributes"][STATE] != "complete":
         group["attributes"][STATE] = "complete"
-        write_bytes(root / METADATA, json.dumps(group, indent=2).encode())
+        with write_whole(root / METADATA, overwrite=True) as staged:
+            staged.write_text(json.dumps(group, indent=2), encoding="utf-8")
     for path in root.rglob("*.partial"):
         path.unlink(missing_ok=True)
     remove_strays(root.parent)

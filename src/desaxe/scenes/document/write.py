@@ -3,9 +3,8 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from ...support.files import check_target, require_writable
 from ...support.shown import printable
-from ...support.written import replacing_ours, require_ours
+from ...support.written import require_path, write_whole
 from .html import html
 from .markdown import markdown
 from .parts import Block, Document, Image, Section, Text
@@ -20,9 +19,7 @@ def require_document(path: Path, overwrite: bool) -> None:
         raise ValueError(
             f"{printable(path)}: a report is written as {' or '.join(FORMS)}; a browser prints .html to PDF"
         )
-    check_target(path)
-    require_ours(path, overwrite)
-    require_writable(path)
+    require_path(path, overwrite)
 
 
 def write_document(document: Document, path: Path, overwrite: bool = False) -> Path:
@@ -31,7 +28,7 @@ def write_document(document: Document, path: Path, overwrite: bool = False) -> P
     budget, form = BUDGET, FORMS[path.suffix.lower()]
     while len((text := form(_within(document, budget))).encode()) > LARGEST and budget:
         budget //= 2
-    with replacing_ours(path, overwrite) as staged:
+    with write_whole(path, overwrite) as staged:
         staged.write_text(text, encoding="utf-8", newline="\n")
     return path
 

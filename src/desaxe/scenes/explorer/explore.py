@@ -14,7 +14,7 @@ from ...mechanism.own import using
 from ...mechanism.quantity_units import UnitSystem
 from ...runtime.request import as_number, check_common, several
 from ...support.forks import IMPORTS
-from ...support.written import require_place
+from ...support.written import require_path
 from .content import FORCES, PageContent, Value, content, forces_first, is_loaded
 from .write import write_page
 
@@ -63,7 +63,7 @@ def explore(
     See docs/choose.md: which call for which question.
     """
     place = Path(path)
-    require_place(place, overwrite)
+    require_path(place, overwrite)
     own = UnitSystem.read(units)
     found = content_of(source, names, branch, title, inputs)
     return write_page(found._replace(units=own) if own else found, place, overwrite)

@@ -15,7 +15,7 @@ from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import PointStatus
 from ...support.extras import needed
 from ...support.template import file_text, filled
-from ...support.written import UNSEALED, replacing_ours, sealed
+from ...support.written import UNSEALED, sealed, write_whole
 from ...units.system import DIMENSIONS
 from .content import PageContent, left_out_text
 
@@ -27,7 +27,7 @@ _COMMENT = re.compile(r"^\s*//.*\n|(?<=;) // .*", re.MULTILINE)
 
 def write_page(content: PageContent, path: Path, overwrite: bool = False) -> Path:
     """Write the page; its path."""
-    with replacing_ours(path, overwrite) as staged:
+    with write_whole(path, overwrite) as staged:
         staged.write_text(page(content), encoding="utf-8")
     return path
 

@@ -7,19 +7,16 @@ from ...evaluation.grid import grid
 from ...evaluation.in_units import in_units
 from ...mechanism.quantity_units import UnitSystem
 from ...support.forks import IMPORTS
-from ...support.written import replacing_ours
 from ..content import Content, PictureRequest
 from .grid import arrays_of
 
 
 def draw(picture: PictureRequest, content: Content, shown_in: UnitSystem, overwrite: bool) -> Path:
     """Draw the curves of a picture, in the units shown, into its file; return its path."""
-    axes, path = drawn(picture, content, shown_in), Path(picture.file)
+    axes = drawn(picture, content, shown_in)
     with IMPORTS:
         from ...plot import save
-    with replacing_ours(path, overwrite) as staged:
-        save(axes.figure, staged)
-    return path
+    return save(axes.figure, picture.file, overwrite=overwrite)
 
 
 def drawn(picture: PictureRequest, content: Content, shown_in: UnitSystem) -> Any:

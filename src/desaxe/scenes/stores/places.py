@@ -10,7 +10,7 @@ from pathlib import Path
 from ...support.extras import needed
 from ...support.files import require_writable
 from ...support.memory import size_text
-from ...support.written import require_place
+from ...support.written import require_path
 from ..content import Content
 from ..parts.extremes import groups_of
 from ..parts.stored import require_store
@@ -47,7 +47,7 @@ def require_places(content: Content, overwrite: bool) -> None:
     for number, picture in enumerate(content.pictures, 1):
         file = Path(picture.file)
         _claim(places, f"picture #{number}.file", file)
-        require_place(file, overwrite)
+        require_path(file, overwrite)
     if content.store is not None:
         _claim(places, "results.store", content.store)
         require_store(content, overwrite)

@@ -16,7 +16,7 @@ from ....support.extras import needed
 from ....support.generated import Generated
 from ....support.shown import printable
 from ....support.version import version
-from ....support.written import replacing_ours, require_place, sealed
+from ....support.written import require_path, sealed, write_whole
 from ...content import Content
 from ...scene import Scene
 from ...schema import SceneError
@@ -59,7 +59,7 @@ class Archive(Generated):
 
     def write(self, overwrite: bool) -> None:
         """Write the archive; with a warning, and without a binary, where no C compiler is."""
-        require_place(self.folder, overwrite)
+        require_path(self.folder, overwrite)
         contents = {name: text.encode() for name, text in self.texts.items() if text}
         found = binary_of(contents[f"sources/{self.folder.stem}.c"], self.folder.stem, self.fmi)
         if found is None:
@@ -71,7 +71,7 @@ class Archive(Generated):
             )
         else:
             contents |= dict([found])
-        with replacing_ours(self.folder, overwrite) as staged:
+        with write_whole(self.folder, overwrite) as staged:
             staged.write_bytes(_zipped(contents))
 
     def summary(self) -> list[str]:
