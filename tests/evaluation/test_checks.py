@@ -2,17 +2,12 @@
 
 import math
 import re
-from decimal import Decimal
-from functools import cache
 
 import numpy as np
-import pint
 import pytest
 
 import desaxe as dx
 from desaxe.evaluation.values import values
-from desaxe.mechanism import inputs as known
-from desaxe.mechanism.read import in_si
 from tests.ways import POINT, SIZES, columns
 
 # ---- status and bad elements ---------------------------------------------------------------------
@@ -170,98 +165,6 @@ def test_a_law_and_a_state_at_once_are_refused_after_a_good_state_too():
 def test_positions_are_named():
     with pytest.raises(TypeError):
         dx.evaluate("V_C", 1.1, 0.01, 0.125, 0.35, 157.0)
-
-
-# ---- units ---------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("name", "text", "number"),
-    [
-        ("ec", "10 mm", 0.01),
-        ("ec", "10mm", 0.01),
-        ("ec", "-0.5 inch", -0.0127),
-        ("AB", "1.25e-1 m", 0.125),
-        ("theta", "60deg", math.pi / 3),
-        ("theta", "-90 degree", -math.pi / 2),
-        ("theta", "1.5", 1.5),
-        ("omega0", "1500rpm", 50 * math.pi),
-        ("omega0", "3 rad/s", 3.0),
-        ("alpha", "2 rad/s^2", 2.0),
-    ],
-)
-def test_a_text_may_carry_its_unit(name, text, number):
-    found = dx.evaluate("a_C", **POINT | {name: text})
-    assert math.isclose(found, dx.evaluate("a_C", **POINT | {name: number}), rel_tol=1e-12)
-
-
-def test_a_quantity_of_pint():
-    length = dx.units.registry().Quantity(10, "mm")
-    assert math.isclose(dx.evaluate("Y", **POINT | {"ec": length}), dx.evaluate("Y", **POINT), rel_tol=1e-15)
-
-
-@pytest.mark.parametrize(
-    ("text", "number"),
-    [("350 mm", 0.35), ("35 cm", 0.35), ("0.03 m", 0.03), ("220 mm", 0.22), ("3e2 mm", 0.3)],
-)
-def test_text_is_the_double_of_the_si_number(text, number):
-    assert dx.evaluate("margin", ec=0.0, AB=0.0, BC=text) == number
-
-
-@cache
-def registry(kind=float):
-    """A user's registry of units, made once: it takes half a second."""
-    return pint.UnitRegistry(non_int_type=kind)
-
-
-@pytest.mark.parametrize(
-    ("number", "unit"),
-    [(350, "mm"), (12.7, "mm"), (0.1, "inch"), (60, "deg"), (1500, "rpm"), (80.6, "kg mm2")],
-)
-def test_a_quantity_of_pint_is_the_double_of_its_text(number, unit):
-    name = {"deg": "theta", "rpm": "omega0", "kg mm2": "I_rod"}.get(unit, "BC")
-    text = in_si(known.INPUTS[name], f"{number} {unit}")
-    for kind in (float, Decimal):
-        own = registry(kind).Quantity(kind(str(number)), unit.replace("mm2", "mm**2"))
-        assert in_si(known.INPUTS[name], own) == text
-    several = registry().Quantity(np.array([350.0, 12.7, 1.0]), "mm")
-    assert in_si(known.INPUTS["BC"], several).tolist() == [0.35, 0.0127, 0.001]
-
-
-def test_a_unit_of_somebody_elses_registry():
-    registry().define("ell = 1.143 m")
-    assert in_si(known.INPUTS["BC"], 2 * registry().ell) == pytest.approx(2.286)
-
-
-def test_a_list_of_text():
-    found = dx.evaluate("Y", **POINT | {"theta": ["0 deg", "90 deg"]})
-    assert np.allclose(found, dx.evaluate("Y", **POINT | {"theta": np.radians([0, 90])}), rtol=1e-14)
-
-
-def test_an_array_of_pint():
-    angles = dx.units.registry().Quantity([0, 90, 180], "deg")
-    found = dx.evaluate("Y", **POINT | {"theta": angles})
-    assert np.allclose(found, dx.evaluate("Y", **POINT | {"theta": np.radians([0, 90, 180])}), rtol=1e-14)
-
-
-@pytest.mark.parametrize(
-    ("name", "text", "complaint"),
-    [
-        ("ec", "3 kg", "ec = '3 kg': it must be a quantity in m"),
-        ("theta", "3 mm", "theta = '3 mm': it must be a quantity in rad"),
-        ("AB", "-10 mm", r"AB = -0\.01: it must be a finite length >= 0"),
-        ("ec", "ten", "ec = 'ten': it must be a number, or a number with a unit"),
-        ("ec", "", "ec = ''"),
-        ("omega0", "25 Hz", "omega0 = '25 Hz': it must be a quantity in rad/s, such as \"1500 rpm\""),
-        ("omega0", "1500 min^-1", "it must be a quantity in rad/s"),
-        ("theta", "60 %", "it must be a quantity in rad"),
-        ("theta", "1,5 rad", "it must be a number, or a number with a unit"),
-        ("theta", "nan", "theta = nan: it must be a finite number"),
-    ],
-)
-def test_a_unit_that_does_not_fit_is_refused(name, text, complaint):
-    with pytest.raises(ValueError, match=complaint):
-        dx.evaluate("V_C", **POINT | {name: text})
 
 
 @pytest.mark.parametrize(

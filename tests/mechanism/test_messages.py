@@ -107,21 +107,6 @@ def test_a_report_shows_loads_in_the_machines_units(tmp_path):
     assert "-1000" not in text
 
 
-@pytest.mark.parametrize(
-    ("name", "text", "asked"),
-    [
-        ("F_Y", "3 kn", "did you mean kN? it must be a quantity in N"),
-        ("AB", "30 MM", "did you mean mm? it must"),
-        ("m_rod", "3 KG", "unknown unit; did you mean kg? it must"),
-        ("F_X", "3 NM", "unknown unit; it must"),
-        ("I_rod", "3 kgm2", "did you mean kg m2? it must"),
-    ],
-)
-def test_units_in_wrong_letters(name, text, asked):
-    with pytest.raises(ValueError, match=re.escape(asked)):
-        dx.Machine(**{name: text})
-
-
 def test_a_knot_is_no_force_of_a_machine():
     with pytest.raises(ValueError, match="'kn' is not a known unit; did you mean kN"):
         dx.Machine(units="mm, kn", AB=50)

@@ -39,7 +39,7 @@ def _point(options: argparse.Namespace) -> int:
 
     names, inputs = names_and_inputs(options.words)
     values: dict[str, Any] = evaluate(names, **inputs)
-    warn_of_slips(inputs)
+    warn_of_slips(inputs, inputs=inputs)
     warn_that_nothing_acts(names, inputs)
     rows = {name: quantity(name, "omega" in inputs) for name in names}
     status = _status(values, inputs)

@@ -149,7 +149,7 @@ def call(
         for key in INPUTS.keys() & inputs.keys():
             refuse_bare_pair(key, inputs[key])
     named = {**dict(zip(positional, args, strict=False)), **inputs}
-    warn_of_slips(named, system, stacklevel=4)
+    warn_of_slips(named, system, 4, {"alpha": machine.get("alpha")})
     with errors_in(system):
         given = {key: in_si(system, key, value) for key, value in named.items()}
         if system and "units" in takes.names:

@@ -13,14 +13,17 @@ from typing import Any, NamedTuple
 
 from ..support.shown import with_unit
 from ..units.text import plain_number
+from .inputs import INPUTS
 from .quantity_units import SI, UnitSystem
 from .ranges import Between, PlusMinus
+from .read import number_of
 from .typical import FARTHEST, FORCES, GRAVITY, KINDS, SIZE, TURNS
 
 LINKS, SHORTEST = ("AB", "BC"), 5e-4  # m: shorter ones are in metres where another unit is meant
 WEAKEST = 0.1  # m/s^2: a gravity below is in m/s^2 where another unit is meant
 SMALL_OFFSET = 5e-4  # of the crank: no smaller one is meant to be one
 LARGE_OFFSET = 5.0  # of crank and rod: a larger one is in millimetres
+BESIDE = ("AB", "BC", "alpha", *FORCES)  # inputs beside which others are a slip
 STRONGEST = 1e9  # Pa: of steel, in a rod half as thick as it is long; those of presses carry some 2e7
 WARNED: set[Any] = set()  # kinds of slips in calls of functions
 
@@ -66,15 +69,25 @@ def slips_in(
 ) -> list[Slip]:
     """The plain numbers, by input, that are almost surely slips; `units` are what they mean.
 
-    inputs   in SI units, beside which an offset is too small or too large, and a force too large
+    inputs   in SI units or as texts, beside which an offset is too small or too large, a force too large
     """
+    inputs = {name: _in_si(name, value) for name, value in inputs.items() if name in BESIDE}
     slips = [slip for name, value in _alone(written) if (slip := _slip(name, value, units, inputs))]
     return [*slips, *_offset(written.get("ec"), units, inputs), *_forces(inputs, units)]
+
+
+def _in_si(name: str, value: Any) -> Any:
+    """A text in SI units, None where it is no number; any other value as it is."""
+    try:
+        return number_of(INPUTS[name], value) if isinstance(value, str) else value
+    except ValueError:  # which the call itself says
+        return None
 
 
 def _offset(ec: Any, units: UnitSystem, inputs: Mapping[str, Any]) -> Iterator[Slip]:
     """An offset that is tiny beside the crank, and none in metres, or in metres and far beyond both links."""
     conversion, AB, BC = units.of("ec"), inputs.get("AB"), inputs.get("BC")
+    ec = plain_number(ec) if isinstance(ec, str) else ec
     if type(ec) not in (int, float) or type(AB) is not float:
         return
     si = abs(conversion.to_si(float(ec)))
@@ -96,7 +109,7 @@ def _forces(inputs: Mapping[str, Any], units: UnitSystem) -> Iterator[Slip]:
         value = inputs.get(name)
         size = abs(value) if isinstance(value, (int, float)) else getattr(value, "largest", 0.0)
         stress = 4.0 * size / length**2
-        if stress > STRONGEST:
+        if stress > STRONGEST and _is_typed(size):
             force, along = units.of(name), units.of("BC")
             yield Slip(
                 FORCES,
