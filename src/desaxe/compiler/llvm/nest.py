@@ -12,6 +12,7 @@ It returns the number of points left to the caller: undecided ones, and angles b
 """
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -22,6 +23,7 @@ from .ir import BYTES, STORED, WIDE, Body, Loop, loop_of
 from .two_forms import APART, block_loop, either_loop
 
 NAME = "kernel"
+CALLED = re.compile(r"@([\w.]+)")
 FUNCTIONS = Path(__file__).with_name("functions.ll").read_text()
 ANGLE = "angle"
 HEAD = 2  # words: the address that repairs points, and that of `feclearexcept`; or 0
@@ -62,7 +64,19 @@ def module_text(entry: Entry, lanes: int) -> str:
         _one_axis(frame, points)
     else:
         _nests(frame, points, tables)
-    return "\n\n".join([FUNCTIONS, *texts, frame.text()])
+    return "\n\n".join([*_called([*texts, frame.text()]), *texts, frame.text()])
+
+
+def _called(texts: Sequence[str]) -> list[str]:
+    """The declarations, and the functions that texts call: LLVM would emit the others, too."""
+    head, *functions = re.split(r"^(?=define )", FUNCTIONS, flags=re.MULTILINE)
+    by_name = {re.findall(CALLED, function)[0]: function for function in functions}
+    called: set[str] = set()
+    new = set(re.findall(CALLED, "".join(texts))) & by_name.keys()
+    while new:
+        called |= new
+        new = {name for each in new for name in re.findall(CALLED, by_name[each])} & by_name.keys() - called
+    return [head, *(function for name, function in by_name.items() if name in called)]
 
 
 def _innermost(kernel: Kernel, lanes: int) -> tuple[Loop, list[str]]:
