@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe.oracle.force_truth import truth
 
 ENGINE = {"AB": 0.04, "BC": 0.064, "m_rod": 0.5, "m_slider": 0.8}
 MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
@@ -43,6 +44,37 @@ def test_no_sweep_finds_a_better_one(name, designs, of_largest, of_best, kind):
         assert beyond >= -(1e-13 if of_best else 1e-14) * abs(best)
         if math.isfinite(found):
             assert beyond <= of_largest * largest + of_best * abs(best), design
+
+
+PRESS = {"m_slider": 1.0, "m_rod": 0.6, "I_rod": 0.004, "g_Y": -9.81}
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "ec", "AB", "BC", "omega0", "mu", "F_Y"),
+    [
+        ("F_B_Y", "max", 0.0, 0.03666491089193882, 0.03667439176148753, 32.6, 0.15178493801098533, 94.1),
+        ("N_C", "max", 0.0, 0.03152791172485842, 0.031528525800495935, 34.4, 0.0802, 78.1),
+        ("F_B_Y", "min", 0.0, 0.04027280059351783, 0.040442095567029865, 17.45, 0.1884, 64.4),
+        (
+            "T_in",
+            "min",
+            0.03410456756538252,
+            0.04848866204263014,
+            0.08274899840083416,
+            22.09751569134461,
+            0.3009214521926092,
+            -90.52384465241121,
+        ),
+    ],
+)
+def test_an_extremum_next_to_an_angle_from_which_friction_jams(name, kind, ec, AB, BC, omega0, mu, F_Y):
+    """Between the last node and the end of the balance: peaks were up to 0.8 % off."""
+    design = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "mu": mu, "F_Y": F_Y, **PRESS}
+    found, sign = dx.peak(name, kind=kind, **design), 1.0 if kind == "max" else -1.0
+    exact = [sign * truth(name, theta=found["theta"] + s, **design) for s in (-1e-4, 0.0, 1e-4)]
+    assert sign * found["value"] == pytest.approx(float(exact[1]), rel=1e-11)
+    assert exact[1] > max(exact[0], exact[2])
+    assert sign * found["value"] >= np.nanmax(sign * dx.evaluate(name, theta=THETA, **design)) - 1e-11
 
 
 @pytest.mark.parametrize("parameter", ["ec", "AB", "BC", "omega0", "m_rod", "m_slider", "mu"])

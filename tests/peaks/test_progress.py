@@ -27,7 +27,8 @@ def test_long_peaks_tell_what_is_done_and_left(kind, monkeypatch):
 
     monkeypatch.setattr("desaxe.peaks.designs.progress_bar", recorded)
     monkeypatch.setattr("desaxe.peaks.designs.LARGE", 20)
-    monkeypatch.setattr("desaxe.peaks.designs.COSTLY_PART", (8, 8))
+    for parts in ("USUAL_PART", "COSTLY_PART"):
+        monkeypatch.setattr(f"desaxe.peaks.designs.{parts}", (8, 8))
     wanted = dx.peak("T_in", **GIVEN, **KINDS[kind])
     assert seen[0] == (0, 24, "peaks of T_in")
     done = [told[0] for told in seen]

@@ -14,13 +14,12 @@ from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.closed.angles import dead_centres, repeated
 from ..support.roots import sign_changes
 from .nodes import Array
-from .special import AT_KINK, SearchedDesigns, own_nodes
+from .special import AT_KINK, ROUNDED, SearchedDesigns, own_nodes
 
 # What keeps a kink where it is: the angle, a position, a dead centre, the distance from one, conditions.
 FIXED, CROSSING, TURNING, FROM_OUTER, FROM_INNER, CONDITION = range(6)
 KIND_OF = {"": CROSSING, "Y_outer": FROM_OUTER, "Y_inner": FROM_INNER}
 BESIDE = 16.0  # last bits of an angle: so near to a jump is next to it
-ROUNDED = 64.0  # last bits of an angle: so near to a dead centre rounding may take the other side's friction
 
 
 class Marks(NamedTuple):

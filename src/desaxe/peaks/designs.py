@@ -25,14 +25,27 @@ from ..runtime.wide_margins import all_have_wide_margins, have_wide_margins
 from ..support.progress import Portions, progress_bar
 from .course import course_of
 from .differences import with_slopes
-from .evaluations import evaluations_of
+from .evaluations import Evaluations, evaluations_of
 from .jumps import at_jumps
 from .loaded import Rows, ValuesUnderLoads
 from .nodes import Array, classes, shared_nodes
 from .programs import Search, needs_own
 from .search import search as search_block
-from .special import USABLE, SearchedDesigns, SearchResult, are_special, complete, own_nodes, stays_zero
+from .search import zeros
+from .special import (
+    AT_KINK,
+    USABLE,
+    SearchedDesigns,
+    SearchResult,
+    are_special,
+    complete,
+    own_nodes,
+    rubbing_nodes,
+    stays_zero,
+    turns_over,
+)
 
+Quantity = Evaluations | ValuesUnderLoads
 KINDS = ("absmax", "max", "min")
 LARGE = 1_000  # designs that may take long: a bar tells
 MOST = 2**16  # values at a time, so that their arrays stay in the cache
@@ -165,7 +178,7 @@ def _all(work: Work, checked: Checked) -> dict[str, Any]:
 
     def part(first: int, last: int) -> None:
         with np.errstate(all="ignore"):
-            found[first] = _peaks(work, checked.part(slice(first, last)))
+            found[first] = PartialSearch(work, checked.part(slice(first, last))).result()
         work.told.add(last - first)
 
     costly = checked.designs.loads or checked.designs.conditions or checked.special.any()
@@ -185,61 +198,113 @@ def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
     }
 
 
-def _peaks(work: Work, checked: Checked) -> dict[str, Any]:
-    """Value, angle, gradient and status of some designs."""
-    sought, search, usual, _ = work
-    name, kind = sought.plan.name, sought.kind
-    designs, bad, special = checked
-    out = np.empty((2 + len(search.parameters), designs.size))
-    theta, status = np.empty(designs.size), np.zeros(designs.size, np.int8)
-    number = KINDS.index(kind)
-    course = course_of(designs) if designs.loads or designs.conditions else None
-    loaded = None if course is None else ValuesUnderLoads(name, search, designs, course)
+class PartialSearch:
+    """The search over some designs, whose results it completes in place."""
 
-    def run(rows: Rows, nodes: Array, key: Search) -> None:
+    def __init__(self, work: Work, checked: Checked) -> None:
+        self.name, self.kind, self.work = work.sought.plan.name, work.sought.kind, work
+        self.designs, self.bad, self.special = checked
+        size, designs = self.designs.size, self.designs
+        self.out = np.full((2 + len(work.search.parameters), size), np.nan)
+        self.theta, self.status = np.full(size, np.nan), np.zeros(size, np.int8)
+        self.course = course_of(designs) if designs.loads or designs.conditions else None
+        self.quantity = self._quantity(self.name, work.search)
+
+    def _quantity(self, name: str, key: Search) -> Quantity:
+        """The quantity of a search; under loads all designs have one form."""
+        return (
+            evaluations_of(key)
+            if self.course is None
+            else ValuesUnderLoads(name, key, self.designs, self.course)
+        )
+
+    def result(self) -> dict[str, Any]:
+        """Value, angle, gradient and status."""
+        self._search_usual()
+        self.out[:, self.bad], self.status[self.bad] = np.nan, BAD_INPUT
+        again = np.flatnonzero((self.special | np.isnan(self.out[0])) & ~self.bad)
+        for start in range(0, again.size, SPECIAL_BLOCK):
+            self._search_special(again[start : start + SPECIAL_BLOCK])
+        out, theta, status, designs, course = self.out, self.theta, self.status, self.designs, self.course
+        theta[np.isnan(out[0])] = np.nan
+        side = np.zeros(designs.size, np.int8)
+        if isinstance(self.quantity, ValuesUnderLoads):
+            usable = np.isin(status, USABLE) & np.isfinite(out[0])
+            side = at_jumps(self.quantity, KINDS.index(self.kind), usable, theta, out)
+        if self.kind == "min" and not designs.rubs:
+            kinks = np.empty((designs.size, 0)) if course is None else course.kinks.angles
+            out[2:, stays_zero(designs, theta, out[0], out[1], kinks)] = 0.0
+        value = np.abs(out[0]) if self.kind == "absmax" else out[0]
+        gradient = dict(zip(self.work.search.parameters, out[2:], strict=True))
+        return {"value": value, "theta": theta, "side": side, "gradient": gradient, "status": status}
+
+    def _search_usual(self) -> None:
+        """Search the designs that turn fully and at all angles have one balance of forces."""
+        usual = self.work.usual
+        quantity = evaluations_of(usual) if self.course is None else self.quantity
+        for rows, grid in _classed(self.designs, np.flatnonzero(~self.special)):
+            nodes = grid[:, None]
+            if self.course is not None:
+                nodes = with_nodes(nodes, self.course.nodes_of(rows))
+            if not self.designs.rubs:
+                self._run(quantity, rows, nodes)
+                continue
+            nodes = with_nodes(nodes, self._rubbing(rows, nodes, usual))
+            self._run(quantity, rows, nodes)
+            value, _ = quantity.curve(nodes, quantity.block(self.designs, rows))
+            turned = rows[
+                turns_over(self.designs, self._found(rows), nodes.T, value.T, *self._marks(rows)[:1])
+            ]
+            self.status[turned], self.out[2:, turned] = 2, np.nan
+
+    def _search_special(self, rows: Rows) -> None:
+        """Search designs at nodes of their own, and tell what their extrema mean."""
+        some, search = self.designs.part(rows), self.work.search
+        own, limits = own_nodes(some)
+        nodes = np.ascontiguousarray(own.T)
+        if self.course is not None:
+            nodes = with_nodes(nodes, self.course.nodes_of(rows))
+        if "mu" in some.columns:
+            nodes = with_nodes(nodes, self._rubbing(rows, nodes, search))
+        self._run(self.quantity, rows, nodes)
+        found = self._found(rows)
+        usable = complete(
+            self.name, self.kind, some, nodes.T, limits, found, search.parameters, *self._marks(rows)
+        )
+        self.out[0, rows], self.theta[rows], self.status[rows] = found.value, found.theta, found.status
+        self.out[2:, rows] = np.where(usable, self.out[2:, rows], np.nan)
+
+    def _run(self, quantity: Quantity, rows: Rows, nodes: Array) -> None:
         """Search designs, with one column of nodes or one for each."""
-        size = max(1, MOST // len(nodes))
-        quantity = evaluations_of(key) if loaded is None else loaded
+        size, kind = max(1, MOST // len(nodes)), KINDS.index(self.kind)
         for first in range(0, rows.size, size):
             part = rows[first : first + size]
             own = nodes if nodes.shape[1] == 1 else nodes[:, first : first + size]
-            theta[part], out[:, part] = search_block(quantity, number, own, quantity.block(designs, part))
+            block = quantity.block(self.designs, part)
+            self.theta[part], self.out[:, part] = search_block(quantity, kind, own, block)
 
-    for rows, grid in _classed(designs, np.flatnonzero(~special)):
-        run(rows, grid[:, None] if course is None else with_nodes(grid, course.nodes_of(rows)), usual)
-    if bad.any():
-        out[:, bad], status[bad] = np.nan, BAD_INPUT
-    again = special if special.all() else special | np.isnan(out[0])
-    rows = np.flatnonzero(again & ~bad)
-    for start in range(0, rows.size, SPECIAL_BLOCK):
-        part = rows[start : start + SPECIAL_BLOCK]
-        some = designs.part(part)
-        nodes, limits = own_nodes(some)
-        if course is not None:
-            more = np.broadcast_to(course.nodes_of(part), (part.size, course.nodes.shape[1]))
-            nodes = np.sort(np.append(nodes, more, axis=1), axis=1)
-        run(part, np.ascontiguousarray(nodes.T), search)
-        found = SearchResult(out[0, part], theta[part], out[1, part], status[part])
-        marks = () if course is None else (course.kinks.angles[part], course.jumps.angles[part])
-        usable = complete(name, kind, some, nodes, limits, found, search.parameters, *marks)
-        out[0, part], theta[part], status[part] = found.value, found.theta, found.status
-        out[2:, part] = np.where(usable, out[2:, part], np.nan)
-    theta[np.isnan(out[0])] = np.nan
-    side = np.zeros(designs.size, np.int8)
-    if loaded is not None:
-        side = at_jumps(loaded, number, np.isin(status, USABLE) & np.isfinite(out[0]), theta, out)
-    if kind == "min" and not designs.rubs:
-        kinks = np.empty((designs.size, 0)) if course is None else course.kinks.angles
-        out[2:, stays_zero(designs, theta, out[0], out[1], kinks)] = 0.0
-    value = np.abs(out[0]) if kind == "absmax" else out[0]
-    gradient = dict(zip(search.parameters, out[2:], strict=True))
-    return {"value": value, "theta": theta, "side": side, "gradient": gradient, "status": status}
+    def _rubbing(self, rows: Rows, nodes: Array, key: Search) -> Array:
+        """The nodes of friction, a row a design; where loads have a kink or jump there are some."""
+        side = self._quantity("N_C", key._replace(name="N_C", parameters=()))
+        turns = zeros(side, nodes, side.block(self.designs, rows))
+        for marks in self._marks(rows):
+            turns[(np.abs(turns[:, :, None] - marks[:, None]) <= AT_KINK).any(axis=2)] = np.nan
+        return rubbing_nodes(self.designs.part(rows), turns)
+
+    def _found(self, rows: Rows) -> SearchResult:
+        return SearchResult(self.out[0, rows], self.theta[rows], self.out[1, rows], self.status[rows])
+
+    def _marks(self, rows: Rows) -> tuple[Array, ...]:
+        """The angles of kinks and jumps of the loads."""
+        course = self.course
+        return () if course is None else (course.kinks.angles[rows], course.jumps.angles[rows])
 
 
-def with_nodes(grid: Array, own: Array) -> Array:
-    """A column of nodes for each row of others: these and those of a class, ascending."""
-    shared = np.broadcast_to(grid, (len(own), grid.size))
-    return np.ascontiguousarray(np.sort(np.concatenate([shared, own], axis=1), axis=1).T)
+def with_nodes(nodes: Array, more: Array) -> Array:
+    """A column of nodes for each row of more, ascending."""
+    rows = np.broadcast_to(nodes.T, (len(more) if nodes.shape[1] == 1 else nodes.shape[1], len(nodes)))
+    more = np.broadcast_to(more, (len(rows), more.shape[1]))
+    return np.ascontiguousarray(np.sort(np.concatenate([rows, more], axis=1), axis=1).T)
 
 
 def _in_form(search: Search, checked: Checked) -> Search:

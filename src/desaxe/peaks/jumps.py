@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from ..mechanism.catalogue import has
 from ..mechanism.names import LENGTHS, sensitivity
-from .course import BESIDE, CONDITION, CROSSING, FIXED, FROM_INNER, FROM_OUTER, ROUNDED, TURNING
+from .course import BESIDE, CONDITION, CROSSING, FIXED, FROM_INNER, FROM_OUTER, TURNING
 from .loaded import Rows, ValuesUnderLoads
 from .nodes import Array
-from .special import AT_KINK
+from .special import AT_KINK, ROUNDED
 
 EQUAL = 2.0**-40  # of a value: limits that differ by less are equal
 APART = 1e-9  # of a value: what friction of the other side changes is more

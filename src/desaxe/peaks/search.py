@@ -95,7 +95,34 @@ def _columns(nodes: Array, designs: NDArray[np.intp]) -> Any:
     return designs if nodes.shape[1] > 1 else 0
 
 
-def brackets(quantity: Curve, nodes: Array, places: Any, slope: Array, block: Array) -> SlopeBrackets:
+class _Values(NamedTuple):
+    """The values of a quantity in the place of its slopes."""
+
+    quantity: Curve
+
+    def curve(self, theta: Array, block: Array) -> tuple[Array, Array]:
+        """Slope and value."""
+        value, slope = self.quantity.curve(theta, block)
+        return slope, value
+
+
+def zeros(quantity: Curve, nodes: Array, block: Array) -> Array:
+    """The angles at which values change their sign between nodes: a row a design, NaN in empty places."""
+    value, _ = quantity.curve(nodes, block)
+    rising = value > 0.0
+    first = np.flatnonzero(rising[:-1] != rising[1:])
+    found = brackets(_Values(quantity), nodes, divmod(first, value.shape[1]), value, block)
+    angles, _ = refined(_Values(quantity), found, block[:, found.owners])
+    order = np.argsort(found.owners, kind="stable")
+    owners = found.owners[order]
+    table = np.full((value.shape[1], int(np.bincount(owners, minlength=1).max())), np.nan)
+    table[owners, np.arange(owners.size) - np.searchsorted(owners, owners)] = angles[order]
+    return table
+
+
+def brackets(
+    quantity: Curve | _Values, nodes: Array, places: Any, slope: Array, block: Array
+) -> SlopeBrackets:
     """The brackets inside of intervals: `places` are the numbers of their first nodes, and designs."""
     j, i = places
     column = _columns(nodes, i)
@@ -114,7 +141,7 @@ def brackets(quantity: Curve, nodes: Array, places: Any, slope: Array, block: Ar
     )
 
 
-def refined(quantity: Curve, found: SlopeBrackets, block: Array) -> tuple[Array, Array]:
+def refined(quantity: Curve | _Values, found: SlopeBrackets, block: Array) -> tuple[Array, Array]:
     """The roots of the slope in brackets, and the values there; `block` has the design of each."""
     _, low, high, before, after, number, slopes = found
     width = high - low

@@ -34,6 +34,8 @@ USABLE = (0, JAMS, TWO_BALANCES)  # with one of these an extremum may have a gra
 MARGIN_ROUNDING = 2.0**-50  # of BC: more than BC - AB - |ec| may lose to rounding
 FARTHER = 2.0**-20  # rad from a limit angle: unbounded quantities have grown from there on, in a wide arc
 TOUCHES = 2.0**-20  # rad from an extremum: where its tangent is 0 there, a magnitude is
+ROUNDED = 64.0  # last bits of an angle: so near to a dead centre rounding may take the other side's friction
+SURE = 1.0 - 1e-6  # less than 1 by more than rounding
 REACH = 1.0  # rad: a stall nearer to the range than this shapes what is in it
 
 
@@ -83,7 +85,7 @@ class SearchedDesigns(NamedTuple):
 def are_special(designs: SearchedDesigns) -> NDArray[np.bool_]:
     """Mask of the designs that cannot turn fully, stall in the range or near it, or have friction."""
     columns = designs.columns
-    special = np.full(designs.size, designs.rubs)
+    special = ~_only_rub(designs) if designs.rubs else np.zeros(designs.size, np.bool_)
     if designs.lengths:
         ec, AB, BC = designs.lengths
         special |= ~(BC - AB - np.abs(ec) > MARGIN_ROUNDING * BC)
@@ -92,6 +94,30 @@ def are_special(designs: SearchedDesigns) -> NDArray[np.bool_]:
         stop = _stall(columns["omega0"], columns["alpha"])
         special |= (stop > low - REACH) & (stop < high + REACH)
     return special
+
+
+def _only_rub(designs: SearchedDesigns) -> NDArray[np.bool_]:
+    """Mask of the designs of which friction jams at no angle: mu |tan(phi)| < 1."""
+    if "mu" not in designs.columns or designs.conditions:
+        return np.zeros(designs.size, np.bool_)
+    ec, AB, BC = designs.lengths
+    steepest = (np.abs(ec) + AB) / BC  # the sine of phi
+    mu = designs.columns["mu"]
+    found: NDArray[np.bool_] = (mu * steepest) ** 2 < SURE * (1.0 - steepest**2)
+    return found
+
+
+def rubbing_nodes(designs: SearchedDesigns, turns: Array) -> Array:
+    """Nodes at the angles of kinks and jumps, where friction or the side of the guide turns, and beside them.
+
+    turns   angles at which the side of the guide turns: a row a design, NaN in empty places
+    """
+    low, high = designs.theta
+    dead = repeated(dead_centres(designs.lengths), low, high)
+    marks = np.concatenate([dead, np.where((turns >= low) & (turns <= high), turns, np.nan)], axis=1)
+    room = ROUNDED * np.spacing(1.0 + np.abs(marks))
+    nodes = np.concatenate([marks - room, marks, marks + room], axis=1)
+    return np.where(np.isnan(nodes), low, np.clip(nodes, low, high))
 
 
 def _stall(omega0: Array, alpha: Array) -> Array:
@@ -113,11 +139,21 @@ def own_nodes(designs: SearchedDesigns) -> tuple[Array, list[tuple[int, float]]]
     lengths = designs.lengths
     if designs.rubs and lengths:
         own = np.append(own, repeated(dead_centres(lengths), low, high), axis=1)
+    if "mu" in designs.columns and lengths:
+        own = np.append(own, repeated(_ends_of_balance(lengths, designs.columns["mu"]), low, high), axis=1)
     width = int(np.isfinite(own).sum(axis=1).max(initial=0))
     near = np.sort(own, axis=1)[:, :width, None] + AROUND
     near = np.where(np.isnan(near), low, near).reshape(designs.size, -1)
     both = np.append(np.broadcast_to(common, (designs.size, common.size)), near, axis=1)
     return np.sort(np.clip(both, low, high), axis=1), ends
+
+
+def _ends_of_balance(lengths: list[Array], mu: Array) -> Array:
+    """The angles in a turn at which friction begins or ends to jam, |mu tan(phi)| = 1; NaN elsewhere."""
+    ec, AB, BC = (length[:, None] for length in lengths)
+    with np.errstate(invalid="ignore"):
+        first = np.arcsin((BC / np.hypot(1.0, mu[:, None]) * [1.0, -1.0] - ec) / AB)
+    return np.append(first, np.pi - first, axis=1)
 
 
 def _limit_angles(designs: SearchedDesigns) -> Array:
@@ -172,8 +208,7 @@ def complete(
     jams, turns = _at_force_limits(name, kind, designs, nodes, swept, found, jumps)
     found.status[:] = _status(status)
     _mark_limits(kind, found, value, nodes, ends)
-    at_kink = kinks is not None and (np.abs(kinks - found.theta[:, None]) <= AT_KINK).any(axis=1)
-    turns |= _turn(designs, found, nodes, value) & np.logical_not(at_kink)
+    turns |= turns_over(designs, found, nodes, value, kinks)
     fixed = _at_change_point(designs, found) & ~turns
     turns |= fixed
     found.value[jams] = np.copysign(np.inf, found.value[jams])
@@ -248,8 +283,10 @@ def _at_force_limits(
     if jumps is not None:
         values = np.where((np.abs(jumps[rows] - inside[:, None]) <= AT_KINK).any(axis=1), np.nan, values)
     for row, theta, value, code in zip(rows, inside, values, codes, strict=True):
-        if value == value and score(kind, value) >= score(kind, found.value[row]):
+        best = value == value and score(kind, value) >= score(kind, found.value[row])
+        if best:
             found.value[row], found.theta[row] = value, theta
+        if best or abs(found.theta[row] - theta) <= AT_KINK:  # a node may be nearer, where rounding differs
             jams[row], turns[row] = code == JAMS, True
     return jams, turns
 
@@ -294,8 +331,10 @@ def _grows(nodes: Array, value: Array, end: float, last: float, reference: float
     return bool(abs(last) > 16.0 * abs(farther))
 
 
-def _turn(designs: SearchedDesigns, found: SearchResult, nodes: Array, value: Array) -> NDArray[np.bool_]:
-    """Mask of the extrema at a kink or jump whose angle moves with the design."""
+def turns_over(
+    designs: SearchedDesigns, found: SearchResult, nodes: Array, value: Array, kinks: Array | None = None
+) -> NDArray[np.bool_]:
+    """Mask of the extrema at a kink or jump whose angle moves with the design, but for those of loads."""
     if not designs.rubs:
         return np.zeros(designs.size, np.bool_)
     low, high = designs.theta
@@ -306,4 +345,6 @@ def _turn(designs: SearchedDesigns, found: SearchResult, nodes: Array, value: Ar
     turns: NDArray[np.bool_] = (
         (np.abs(found.slope) > SMOOTH * usual) & (found.theta != low) & (found.theta != high)
     )
+    if kinks is not None:
+        turns &= ~(np.abs(kinks - found.theta[:, None]) <= AT_KINK).any(axis=1)
     return turns
