@@ -3,10 +3,10 @@
 work         the works and their inputs
 contenders/  desaxe and its peers, one file each
 formulas     the textbook forms that the peers compute
-peaks        the best of 720 angles, for all peers
+rows         works beside others in one process: peaks, motions, steady states, loads, generated/
 blocks       blocks of points, for peers that take a matrix
 child        one contender in a process of its own
-rig          one call, or several in turns, timed
+rig          a call, timed
 accuracy/    `python -m benchmarks --accuracy`: every accuracy of desaxe beside the textbook's formula
 race         contenders in turns at a work
 errors       errors against the truth, by the rig of `accuracy/`
@@ -19,10 +19,5 @@ picture      the pictures of that page
 startup      first calls and second processes; `python -m benchmarks.startup` alone
 steps        `python -m benchmarks.steps`: the worst error of many motions beside the usual one
 tolerances   `python -m benchmarks.tolerances`: errors of motions beside the tolerance asked for
-motions      `python -m benchmarks.motions`: simulations
-steady       `python -m benchmarks --only steady`: steady states beside simulating them
-integrators  `--only integrators`: many motions beside heyoka
-loads        `--only loads`: grids, points and peaks under loads that vary with the motion
-generated    `--only generated`: the modules of generated/ beside the library
 scale        `python -m benchmarks.scale`: sweeps
 """

@@ -6,6 +6,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .rows import ROWS, table
 from .work import BRIEF, BY_KEY, WORKS
 
 if TYPE_CHECKING:
@@ -16,11 +17,6 @@ RESULTS = Path(__file__).parent / "results" / "measured.json"
 DOCS = ROOT / "docs"
 PAGE, MEASURED = DOCS / "benchmarks.md", DOCS / "measured.md"
 STARTS = "starts"  # no race: processes of desaxe alone
-STEADY = "steady"  # no race: beside simulating
-LOADS = "loads"  # no race: beside a constant force
-INTEGRATORS = "integrators"  # no race: beside heyoka's Taylor series
-GENERATED = "generated"  # no race: beside the library
-TABLES = (STEADY, LOADS, INTEGRATORS, GENERATED)
 DESCRIPTION = """\
 desaxe beside NumPy, numba, numexpr, JAX, CasADi, heyoka and C at the same works, on one core and on all:
 time as a multiple of desaxe's, error against the truth. The peers come with the extra `peers`, C with gcc;
@@ -61,11 +57,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--only",
         action="append",
-        choices=[*keys, STARTS, *TABLES],
+        choices=[*keys, STARTS, *ROWS],
         metavar="WORK",
-        help=f"this work alone; repeatable; {STARTS}: desaxe's first calls and second processes; "
-        f"{STEADY}: steady states beside simulating them; {LOADS}: loads that vary beside a constant force; "
-        f"{INTEGRATORS}: simulations beside heyoka; {GENERATED}: generated/ beside the library",
+        help="this work alone; repeatable; --list names them",
     )
     parser.add_argument(
         "--accuracy",
@@ -100,9 +94,7 @@ def _listed() -> str:
 
     works = [f"  {work.key:11}{work.title}" for work in WORKS]
     works.append(f"  {STARTS:11}first calls and second processes of desaxe")
-    works.append(f"  {STEADY:11}steady states on a motor beside simulating until two turns agree")
-    works.append(f"  {INTEGRATORS:11}simulations of many designs beside heyoka's Taylor series")
-    works.append(f"  {GENERATED:11}the modules of generated/ beside the library")
+    works += [f"  {name}: {work.__doc__}" for name, work in ROWS.items()]
     missing = {one.name: "" if one.is_here else f"not here: needs {one.needs}" for one in CONTENDERS}
     return "\n".join(
         ["works", *works, "contenders", *(f"  {n:18}{why}".rstrip() for n, why in missing.items())]
@@ -123,10 +115,9 @@ def _measure(options: argparse.Namespace) -> None:
     effort = QUICK if options.quick else FULL
     effort = effort._replace(points=options.points, rounds=options.rounds or effort.rounds)
     only = options.only or ()
-    for name in TABLES:
-        if name in only:
-            print(import_module(f".{name}", __package__).table())
-    if only and set(only) <= set(TABLES):
+    for name in (name for name in ROWS if name in only):
+        print(table(name, effort.rounds), end="\n\n")
+    if only and set(only) <= set(ROWS):
         return
     works = [BY_KEY[key] for key in only if key in BY_KEY]
     with progress_bar() as watch:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.blocks import POINTS, block_size, filled, peaks
+from benchmarks.rows import table
 from benchmarks.work import BY_KEY, GRID, WORKS, swept
 
 
@@ -47,3 +48,21 @@ def test_peaks_of_blocks_are_those_of_the_whole():
     dense = columns["AB"] * np.cos(columns["theta"]) + columns["ec"]
     np.testing.assert_array_equal(values, np.abs(dense).max(axis=1))
     np.testing.assert_array_equal(angles, columns["theta"][np.abs(dense).argmax(axis=1)])
+
+
+@pytest.mark.parametrize(
+    ("name", "bound"),
+    [
+        ("peaks", 1e-4),  # the best of 720 angles
+        ("derivatives", 0.0),
+        ("generated-forces-points", 1e-12),
+        pytest.param("motions", 1e-7, marks=pytest.mark.thorough),
+        pytest.param("steady", 1e-9, marks=pytest.mark.thorough),
+    ],
+)
+def test_all_ways_of_a_row_have_the_same_values(name, bound):
+    first, *rest = (line.split(" | ") for line in table(name, 1).splitlines()[4:])
+    assert first[2:] == ["1", "0.0e+00 |"]
+    assert rest
+    for cells in rest:
+        assert float(cells[3].rstrip(" |")) <= bound, cells
