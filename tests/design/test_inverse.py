@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
+from mpmath import mp, mpf
 
 import desaxe as dx
 
@@ -71,3 +72,43 @@ def test_units_of_arrays():
         found = dx.inverse(Y=given, V_C=["1 m/s", "-200 cm/s"], **lengths)
         for name, values in wanted.items():
             np.testing.assert_allclose(found[name], values, rtol=1e-12)
+
+
+@pytest.mark.parametrize("branch", [1, -1])
+def test_a_distance_from_the_outer_dead_centre(branch):
+    """Angles to rounding however near it is: the roots of the loop closure at 40 digits."""
+    draw = np.random.default_rng(3)
+    AB = draw.uniform(0.05, 0.2, 40)
+    BC = AB * draw.uniform(1.2, 4.0, 40)
+    ec = draw.uniform(-0.9, 0.9, 40) * (BC - AB)
+    s = dx.events(ec=ec, AB=AB, BC=BC, branch=branch)["stroke"] * 10.0 ** draw.uniform(-14.0, -0.01, 40)
+    found = dx.inverse(s=s, ec=ec, AB=AB, BC=BC, branch=branch)
+    assert not found["status"].any()
+    with mp.workdps(40):
+        for k, two in enumerate(found["theta"].tolist()):
+            crank, rod, offset = mpf(float(AB[k])), mpf(float(BC[k])), mpf(float(ec[k]))
+
+            def distance(theta, crank=crank, rod=rod, offset=offset):
+                along = mp.sqrt(rod**2 - (crank * mp.sin(theta) + offset) ** 2)
+                return mp.sqrt((crank + rod) ** 2 - offset**2) - branch * crank * mp.cos(theta) - along
+
+            for theta in two:
+                exact = mp.findroot(lambda x, d=distance, k=k: d(x) - mpf(float(s[k])), mpf(theta))
+                assert abs(exact - theta) < 3e-15
+            assert two[0] < two[1]
+
+
+def test_distances_at_the_ends_of_the_stroke():
+    lengths = {"ec": 0.01, "AB": 0.1, "BC": 0.3}
+    ends = dx.events(**lengths)
+    found = dx.inverse(s=[0.0, 0.1, 0.3], V_C=1.0, **lengths)
+    assert found["status"].tolist() == [2, 0, 1]
+    assert found["theta"][0, 0] == ends["theta_outer"]
+    assert np.isnan(found["omega"][0]).all()
+    machine = dx.Machine(units="mm, deg", ec=10, AB=100, BC=300)
+    there = machine.evaluate("s", theta=machine.inverse(s=5)["theta"])
+    assert there == pytest.approx([5.0, 5.0], rel=1e-13)
+    with pytest.raises(TypeError, match="Y and s both"):
+        dx.inverse(s=0.1, Y=0.3, **lengths)
+    with pytest.raises(TypeError, match="Y or s"):
+        dx.inverse(**lengths)

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..evaluation.evaluate import evaluate
+from ..mechanism.closed import TURN
+from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.closed.inverse import INVERSE
 from ..mechanism.inputs import INPUTS, Input
@@ -18,12 +20,16 @@ from ..support.answer import Answer
 
 Array = NDArray[np.float64]
 DEAD_CENTRE = InverseStatus.DEAD_CENTRE
+NEAR = 1e-4  # of the crank: distances from the dead centre at which the turn from it is known by a parabola
+STEPS = 5  # of Newton's method
+LARGEST = 0.1  # rad: of a step
 
 # What only this question takes; the lengths are those of every other.
 SLIDER_INPUTS = {
     row.name: row
     for row in (
         Input("Y", "m", "slider position along the slider axis"),
+        Input("s", "m", "slider's distance from its outer dead centre", 0.0, "a finite length >= 0"),
         Input("V_C", "m/s", "velocity of the slider"),
         Input("a_C", "m/s^2", "acceleration of the slider"),
     )
@@ -32,11 +38,20 @@ SLIDER_INPUTS = {
 
 @with_known_inputs
 def inverse(
-    *, Y: Any, ec: Any, AB: Any, BC: Any, branch: int = 1, V_C: Any = None, a_C: Any = None
+    *,
+    Y: Any = None,
+    ec: Any,
+    AB: Any,
+    BC: Any,
+    branch: int = 1,
+    s: Any = None,
+    V_C: Any = None,
+    a_C: Any = None,
 ) -> dict[str, Any]:
-    """The crank angles that put the slider at Y, and the crank's motion given the slider's.
+    """The crank angles that put the slider at Y, or s from its outer dead centre, and the crank's motion.
 
     Y            slider position [m]; arrays of everything broadcast like NumPy
+    s            in place of Y: distance from the outer dead centre [m], exact next to it, too
     ec, AB, BC   lengths [m], as in `evaluate`
     branch       +1 or -1: only angles at which the mechanism is on this branch
     V_C, a_C     the slider's velocity [m/s] and acceleration [m/s^2], if known
@@ -56,15 +71,21 @@ def inverse(
     check_common({}, branch)
     if a_C is not None and V_C is None:
         raise TypeError("inverse: V_C is missing (alpha needs V_C and a_C)")
-    given = {"Y": Y, "ec": ec, "AB": AB, "BC": BC, "V_C": V_C, "a_C": a_C}
+    if Y is not None and s is not None:
+        raise TypeError("inverse: Y and s both say where the slider is; give one of them")
+    at = "Y" if s is None else "s"
+    given = {at: Y if s is None else s, "ec": ec, "AB": AB, "BC": BC, "V_C": V_C, "a_C": a_C}
     arrays = {
         name: _input(name, value)
         for name, value in given.items()
-        if value is not None or name in (*INPUTS, "Y")
+        if value is not None or name in (*INPUTS, at)
     }
     shape = broadcast_shape(arrays)
-    position, *lengths = (np.broadcast_to(arrays[n], shape) for n in ("Y", *LENGTHS))
-    theta, status = _angles(position, lengths, branch, shape)
+    position, *lengths = (np.broadcast_to(arrays[n], shape) for n in (at, *LENGTHS))
+    if s is None:
+        theta, status = _angles(position, lengths, branch, shape)
+    else:
+        theta, status = _angles_at_distance(position, lengths, branch, shape)
     result: dict[str, Any] = {"theta": theta}
     with np.errstate(all="ignore"):
         if V_C is not None:
@@ -75,7 +96,7 @@ def inverse(
 
 def _input(name: str, value: Any) -> Array:
     if value is None:
-        raise TypeError(f"inverse: {name} is missing (needed: Y, ec, AB, BC)")
+        raise TypeError(f"inverse: {name} is missing (needed: Y or s, ec, AB, BC)")
     if name in INPUTS:
         return as_array(name, value, ("Y", "ec", "AB", "BC"), ("inverse",))
     return number_or_array(SLIDER_INPUTS[name], value)
@@ -92,6 +113,35 @@ def _angles(
     first, second, status = form.arrays(*inputs) if shape else form.point(*map(float, inputs))
     theta = np.stack([np.broadcast_to(angle, shape) for angle in (first, second)], axis=-1)
     return theta, np.broadcast_to(np.asarray(status, np.int8), shape)
+
+
+def _angles_at_distance(
+    distance: Array, lengths: list[Array], branch: int, shape: tuple[int, ...]
+) -> tuple[Array, NDArray[np.int8]]:
+    """As `_angles`, at a distance from the outer dead centre: Newton's method mends what Y rounds away."""
+    form = closed_form(DEAD_CENTRES, ("Y_outer", "theta_outer"), branch=float(branch))
+    outer, centre = (np.broadcast_to(part, shape) for part in form.arrays(*lengths))
+    theta, status = _angles(outer - branch * distance, lengths, branch, shape)
+    inputs: dict[str, Any] = {
+        name: np.broadcast_to(side[..., None], theta.shape)
+        for name, side in zip(LENGTHS, lengths, strict=True)
+    }
+    at_centre = dict(zip(LENGTHS, lengths, strict=True))
+    names = ["s", "s_wrt_theta"]
+    with np.errstate(all="ignore"):
+        bend = evaluate("Y_wrt_theta_theta", theta=np.nan_to_num(centre), branch=branch, **at_centre)
+        turn = np.sqrt(2.0 * distance / np.abs(bend))[..., None] * np.array([-1.0, 1.0])
+        near = (distance < NEAR * lengths[1])[..., None] & np.isfinite(turn)
+        theta = np.where(near, centre[..., None] + turn, theta)
+        for _ in range(STEPS):
+            here = evaluate(names[:2], theta=np.nan_to_num(theta), branch=branch, **inputs)
+            step = (here["s"] - distance[..., None]) / here["s_wrt_theta"]
+            theta = np.where(np.isfinite(step) & (np.abs(step) < LARGEST), theta - step, theta)
+    close = near[..., 0] & (status != 4)  # where the rounding of Y decides nothing
+    at_outer = close & (distance == 0.0)
+    theta = np.where(at_outer[..., None], np.stack([centre, np.full(shape, np.nan)], axis=-1), theta)
+    status = np.where(at_outer, np.int8(DEAD_CENTRE), np.where(close, np.int8(0), status))
+    return np.sort(theta - TURN * np.ceil(theta / TURN - 0.5), axis=-1), status
 
 
 def _add_rates(

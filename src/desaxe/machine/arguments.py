@@ -15,7 +15,7 @@ from ..units.text import PLUS_MINUS, with_unit_of
 # Arguments that carry no unit of their own name: what they are about is said by their keys.
 EQUATION = "=="  # of a limit of `keep`
 BY_KEY = ("over", "keep", "changes", "sigma")
-POSITIONS = {"Y", "V_C", "a_C"}
+POSITIONS = {"Y", "s", "V_C", "a_C"}
 
 
 def has_unit(name: str) -> bool:
