@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from .design.synthesis.synthesize import synthesize as synthesize
     from .design.tolerance.tolerance import tolerance as tolerance
     from .design.turn.counterweight import counterweight as counterweight
+    from .design.turn.crossings import crossings as crossings
     from .design.turn.harmonics import harmonics as harmonics
     from .enclosure.enclose import enclose as enclose
     from .evaluation.evaluate import evaluate as evaluate
@@ -68,6 +69,7 @@ PUBLIC = {
     "tolerance": "desaxe.design.tolerance.tolerance",
     "harmonics": "desaxe.design.turn.harmonics",
     "counterweight": "desaxe.design.turn.counterweight",
+    "crossings": "desaxe.design.turn.crossings",
     "drive": "desaxe.design.drive.drive",
     "explore": "desaxe.scenes.explorer.explore",
     "to_excel": "desaxe.machine.excel",

@@ -36,6 +36,7 @@ METHODS = {
     "enclose": "desaxe.enclosure.enclose",
     "harmonics": "desaxe.design.turn.harmonics",
     "counterweight": "desaxe.design.turn.counterweight",
+    "crossings": "desaxe.design.turn.crossings",
     "drive": "desaxe.design.drive.drive",
     "steady": "desaxe.design.steady.steady",
     "fit": "desaxe.design.fit.fit",

@@ -68,6 +68,20 @@ class TurnStatus(Status):
     BAD_INPUT = 4, "bad input"
 
 
+class CrossingStatus(Status):
+    """The status of a design: `crossings`.
+
+    Decided by `design/turn/crossings.py`.
+    """
+
+    OK = 0, "ok"
+    CANNOT_TURN = 1, "the crank does not turn fully"
+    CHANGE_POINT = 2, "at a change point: the margin is 0"
+    EQUAL = 3, "equal to the value at all angles"
+    BAD_INPUT = 4, "bad input"
+    NO_VALUE = 5, "no value at some angles: friction jams, or has two balances of forces"
+
+
 class InverseStatus(Status):
     """The status of a slider position: `inverse`.
 

@@ -1,0 +1,200 @@
+"""`crossings`: the angles at which a quantity passes through a value, and its share of the cycle above it."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...evaluation.arrays import are_good, as_array, broadcast_shape
+from ...evaluation.under_loads.loaded import loads_of
+from ...loads.angles import turns_of
+from ...mechanism.catalogue import has, quantity
+from ...mechanism.closed.limits import margin_of
+from ...mechanism.inputs import Input
+from ...mechanism.keywords import with_known_keywords
+from ...mechanism.names import LENGTHS, sensitivity
+from ...mechanism.quantity_units import slopes_of, unit_of
+from ...mechanism.read import read_array
+from ...mechanism.status import CrossingStatus
+from ...runtime.request import as_number, check_common
+from ...support.answer import Answer
+from ...support.panels import Array, Panels
+from .cycle import MOST_TURNS, Cycle
+
+TOGETHER = 3e-8  # rad: crossings that are nearer are one, or a tangency
+EQUAL = 1e-14  # of the largest value: a difference that is none
+JUMP = 1e-9  # of the largest value: a change at one angle that is a jump
+AT_EDGE = 1e-12  # rad
+LARGEST = 1e-6  # rad: correction of a root by Newton's method
+
+
+class Crossings(NamedTuple):
+    """Those of one design, ascending."""
+
+    theta: Array
+    rising: Array
+    side: Array
+    share: float
+
+
+NONE = Crossings(np.empty(0), np.empty(0), np.empty(0), np.nan)
+
+
+@with_known_keywords
+def crossings(name: str, *, value: Any = 0.0, branch: int = 1, **inputs: Any) -> dict[str, Any]:
+    """The crank angles at which a quantity passes through a value, and how long it is above it.
+
+    name    any quantity or sensitivity: a force in the rod for its reversal, "T_in", "V_C"
+    value   in the quantity's unit
+    inputs  as in `evaluate`, without theta: numbers and arrays, which broadcast, for many designs; F_X and F_Y
+            may vary with the motion
+
+    Returns a dict; of several designs the last axis of arrays has the crossings, padded with NaN:
+
+    theta     angles [rad] in one cycle of crank and loads, ascending
+    rising    1 where the quantity grows with the angle, -1 where it falls
+    side      0; at a jump through the value the side of theta, -1 or 1, on which the quantity is larger
+    count     of crossings
+    share     of the cycle in which the quantity is larger than the value
+    gradient  dict input -> derivatives of theta, of jumps, too
+    status    0; 1 the crank does not turn fully, 2 change point, 3 equal to the value at all angles, 4 bad
+              input, 5 no value at some angles
+
+    A quantity that touches the value does not cross it. Panels between kinks and jumps are halved until the
+    quantity is resolved; Newton's method with the derived slope ends each search. Raises as `evaluate` does.
+
+    See docs/choose.md: which call for which question.
+
+        >>> import desaxe as dx
+        >>> reversal = dx.crossings("V_C", ec=0.0, AB=0.1, BC=0.3, omega0=10.0)
+        >>> [round(float(angle), 6) for angle in reversal["theta"]], round(reversal["share"], 6)
+        ([0.0, 3.141593], 0.5)
+    """
+    row = Input(name, quantity(name, inputs.get("omega") is not None).unit, "")
+    check_common({}, branch)
+    if inputs.pop("theta", None) is not None:
+        raise TypeError("crossings: theta is the answer; the cycle is that of crank and loads")
+    numbers, loads = loads_of({key: v for key, v in inputs.items() if v is not None})
+    for length in LENGTHS:
+        if length not in numbers:
+            as_number(length, None, LENGTHS, ("crossings",))
+    designs = {key: as_array(key, v, LENGTHS, ("crossings",)) for key, v in numbers.items()}
+    arrays = {**designs, "value": read_array(row, value)}
+    shape = broadcast_shape(arrays)
+    flat = {key: np.broadcast_to(v, shape).reshape(-1) for key, v in arrays.items()}
+    level = flat.pop("value")
+    turns = turns_of("crossings", loads, MOST_TURNS)
+    status = _status(flat, level)
+    found = [NONE] * level.size
+    for k in np.flatnonzero(status == 0).tolist():
+        cycle = Cycle({p: v[k : k + 1] for p, v in flat.items()}, loads, branch, turns)
+        found[k], status[k] = _of_one(cycle, name, float(level[k]))
+    return _answer(name, found, status, shape, flat, loads, branch, turns)
+
+
+def _status(designs: Mapping[str, Array], level: Array) -> Array:
+    """Why designs have no crossings; 0 for those that may."""
+    bad = ~np.isfinite(level)
+    for name, array in designs.items():
+        bad |= ~are_good(name, array)
+    margin = margin_of(*(designs[name] for name in LENGTHS))
+    codes = CrossingStatus.BAD_INPUT, CrossingStatus.CANNOT_TURN, CrossingStatus.CHANGE_POINT
+    return np.select([bad, margin < 0.0, margin == 0.0], codes, 0).astype(np.int8)
+
+
+def _of_one(cycle: Cycle, name: str, level: float) -> tuple[Crossings, int]:
+    """The crossings of one design, and its status."""
+    panels = cycle.panels([name])
+    edges, values = panels.edges[0], panels.values[name][0]
+    if not np.isfinite(values).all():
+        return NONE, CrossingStatus.NO_VALUE
+    height = values - level
+    largest = np.abs(values).max()
+    if np.abs(height).max() <= EQUAL * max(largest, abs(level)):
+        return NONE._replace(share=0.0), CrossingStatus.EQUAL
+    one = Panels(edges, {name: height})
+    sampled = one.samples(height)
+    roots = one.roots(height)
+    roots = np.append(roots, edges[:1]) if sampled[0] * sampled[-1] < 0.0 else roots
+    theta = _odd(np.sort((roots - edges[0]) % cycle.angle), cycle.angle) + edges[0]
+    ends = one.ends(height)
+    jumps = np.roll(ends[:, 1], 1) - ends[:, 0]  # at the start of each panel: before - after
+    gap = np.abs(theta[:, None] - edges[:-1])
+    edge = np.minimum(gap, cycle.angle - gap)
+    at = edge.argmin(axis=1) if theta.size else np.empty(0, int)
+    is_jump = (edge.min(axis=1, initial=np.inf) <= AT_EDGE) & (np.abs(jumps[at]) > JUMP * largest)
+    theta = np.where(is_jump, edges[at], _polished(cycle, name, theta, level))
+    middle = theta + 0.5 * np.diff(theta, append=theta[:1] + cycle.angle)
+    above = one.at((middle - edges[0]) % cycle.angle + edges[0], height) > 0.0
+    share = float(np.diff(theta, append=theta[:1] + cycle.angle)[above].sum() / cycle.angle)
+    share = share if theta.size else float(sampled.max() > 0.0)
+    rising = np.where(above, 1.0, -1.0)
+    order = np.argsort(theta % cycle.angle)
+    found = (theta % cycle.angle, rising, np.where(is_jump, rising, 0.0))
+    return Crossings(*(part[order] for part in found), share), CrossingStatus.OK
+
+
+def _odd(roots: Array, angle: float) -> Array:
+    """One root for each odd number of them that are together, none for an even one: a tangency."""
+    if roots.size > 1 and roots[0] + angle - roots[-1] < TOGETHER:  # around the end of the cycle
+        first = int(np.argmax(np.diff(roots) >= TOGETHER)) + 1 if np.any(np.diff(roots) >= TOGETHER) else 0
+        roots = np.concatenate([roots[first:], roots[:first] + angle])
+    groups = np.split(roots, np.flatnonzero(np.diff(roots) >= TOGETHER) + 1) if roots.size else []
+    return np.array([group[group.size // 2] for group in groups if group.size % 2])
+
+
+def _polished(cycle: Cycle, name: str, theta: Array, level: float) -> Array:
+    """Roots after a step of Newton's method with the derived slope."""
+    along = sensitivity(name, "theta")
+    if not theta.size or not has(along, "omega" in cycle.numbers):
+        return theta
+    here = Cycle.values(cycle, [name, along], theta, np.zeros(theta.shape, int))
+    with np.errstate(all="ignore"):
+        step = (here[name] - level) / here[along]
+    return np.asarray(np.where(np.abs(step) < LARGEST, theta - step, theta))
+
+
+def _answer(
+    name: str,
+    found: Sequence[Crossings],
+    status: Array,
+    shape: tuple[int, ...],
+    designs: Mapping[str, Array],
+    loads: Mapping[str, Any],
+    branch: int,
+    turns: int,
+) -> Answer:
+    most = max(one.theta.size for one in found)
+    columns = {key: np.full((len(found), most), np.nan) for key in ("theta", "rising", "side")}
+    for k, one in enumerate(found):
+        for key, column in columns.items():
+            column[k, : one.theta.size] = getattr(one, key)
+    rows = Cycle(designs, loads, branch, turns)
+    gradient = _gradient(rows, name, columns["theta"], columns["side"])
+    result = {key: column.reshape(*shape, most) for key, column in columns.items()}
+    count, share = (np.array(part).reshape(shape) for part in zip(*((c.theta.size, c.share) for c in found)))
+    result |= {"count": count if shape else int(count), "share": share if shape else float(share)}
+    result["gradient"] = {p: slope.reshape(*shape, most) for p, slope in gradient.items()}
+    result["status"] = status.reshape(shape) if shape else int(status[0])
+    units = {"theta": unit_of("theta"), "gradient": slopes_of("theta", gradient)}
+    return Answer(result, units, CrossingStatus)
+
+
+def _gradient(cycle: Cycle, name: str, theta: Array, side: Array) -> dict[str, Array]:
+    """The derivatives of angles by each input: -q_p / q_theta, at jumps those of the jump."""
+    state = "omega" in cycle.numbers
+    slopes = {p: sensitivity(name, p) for p in cycle.numbers if has(sensitivity(name, p), state)}
+    along = sensitivity(name, "theta")
+    row, k = np.nonzero(np.isfinite(theta))
+    if not row.size or not has(along, state):
+        return {p: np.full(theta.shape, np.nan) for p in slopes}
+    here = Cycle.values(cycle, [along, *slopes.values()], theta[row, k], row)
+    moves = cycle.moves([name], theta) if np.any(side[row, k]) else {}
+    gradient = {}
+    for p, slope in slopes.items():
+        gradient[p] = np.full(theta.shape, np.nan)
+        with np.errstate(all="ignore"):
+            gradient[p][row, k] = -here[slope] / here[along]
+        shift = moves.get(p, np.zeros(theta.shape))
+        gradient[p] = np.where(np.nan_to_num(side) != 0.0, shift, gradient[p])
+    return gradient
