@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from .design.fit.fit import fit as fit
     from .design.inverse import inverse as inverse
     from .design.optimisation.optimize import optimize as optimize
+    from .design.solve import solve as solve
     from .design.steady.steady import steady as steady
     from .design.synthesis.synthesize import synthesize as synthesize
     from .design.tolerance.tolerance import tolerance as tolerance
@@ -65,6 +66,7 @@ PUBLIC = {
     "events": "desaxe.design.events.events",
     "optimize": "desaxe.design.optimisation.optimize",
     "synthesize": "desaxe.design.synthesis.synthesize",
+    "solve": "desaxe.design.solve",
     "steady": "desaxe.design.steady.steady",
     "tolerance": "desaxe.design.tolerance.tolerance",
     "harmonics": "desaxe.design.turn.harmonics",

@@ -126,7 +126,7 @@ def _angles_at_distance(
         name: np.broadcast_to(side[..., None], theta.shape)
         for name, side in zip(LENGTHS, lengths, strict=True)
     }
-    at_centre = dict(zip(LENGTHS, lengths, strict=True))
+    at_centre: dict[str, Any] = dict(zip(LENGTHS, lengths, strict=True))
     names = ["s", "s_wrt_theta"]
     with np.errstate(all="ignore"):
         bend = evaluate("Y_wrt_theta_theta", theta=np.nan_to_num(centre), branch=branch, **at_centre)

@@ -39,6 +39,11 @@ def in_si(system: UnitSystem, name: str, value: Any) -> Any:
     return _converted(system, name, value) if has_unit(name) else value
 
 
+def in_unit_of(name: str, value: Any, system: UnitSystem) -> Any:
+    """A value of a quantity in SI units."""
+    return _converted(system, name, value) if system else value
+
+
 def _quantity_of(measure: Any) -> str:
     """The name whose unit the limits of a measure are in: of a peak, the quantity."""
     return str(measure[-1]) if isinstance(measure, (tuple, list)) else str(measure)

@@ -16,7 +16,7 @@ from ..mechanism.ranges import refuse_bare_pair
 from ..mechanism.slips import warn_of_slips
 from ..runtime.request import MachineSpeed
 from ..support.forks import IMPORTS, imported
-from .arguments import in_si
+from .arguments import in_si, in_unit_of
 from .results import shown
 
 # Public function -> its module; what it takes that no machine gives, because it is what is looked for.
@@ -38,6 +38,7 @@ METHODS = {
     "counterweight": "desaxe.design.turn.counterweight",
     "crossings": "desaxe.design.turn.crossings",
     "drive": "desaxe.design.drive.drive",
+    "solve": "desaxe.design.solve",
     "steady": "desaxe.design.steady.steady",
     "fit": "desaxe.design.fit.fit",
     "function": "desaxe.evaluation.function",
@@ -153,6 +154,8 @@ def call(
     warn_of_slips(named, system, 4, {"alpha": machine.get("alpha")})
     with errors_in(system):
         given = {key: in_si(system, key, value) for key, value in named.items()}
+        if "value" in given:  # of `crossings`: in the unit of the quantity
+            given["value"] = in_unit_of(str(named.get("name")), given["value"], system)
         if system and "units" in takes.names:
             given.setdefault("units", system)
         found = function(**given, **filled(machine, name, takes, given))

@@ -82,6 +82,18 @@ class CrossingStatus(Status):
     NO_VALUE = 5, "no value at some angles: friction jams, or has two balances of forces"
 
 
+class SolveStatus(Status):
+    """The status of a search: `solve`.
+
+    Decided by `design/solve.py`.
+    """
+
+    OK = 0, "ok"
+    NOT_REACHED = 1, "the value is not reached"
+    CANNOT_TURN = 2, "the crank does not turn fully anywhere in the range"
+    EQUAL = 3, "the quantity has the value everywhere in the range"
+
+
 class InverseStatus(Status):
     """The status of a slider position: `inverse`.
 

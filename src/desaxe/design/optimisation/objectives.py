@@ -54,12 +54,18 @@ def _several(wanted: Any) -> list[Any]:
     return list(wanted) if many or isinstance(wanted, list) else [wanted]
 
 
-def space_of(over: Mapping[str, Any], fixed: Mapping[str, Any], branch: int, deadline: Deadline) -> Space:
+def space_of(
+    over: Mapping[str, Any],
+    fixed: Mapping[str, Any],
+    branch: int,
+    deadline: Deadline,
+    caller: str = "optimize",
+) -> Space:
     """The box of free parameters and the fixed inputs."""
     known = tuple(name for name in INPUTS if name != "theta")
     _check_mapping("over", over, "{'ec': (0, 0.1)}")
-    check_inputs("optimize", over, known)
-    check_inputs("optimize", fixed, known)
+    check_inputs(caller, over, known)
+    check_inputs(caller, fixed, known)
     if not over:
         raise ValueError("over= is empty: name at least one parameter and its bounds, such as ec=(0, 0.1)")
     both = [name for name in over if name in fixed]
@@ -70,7 +76,7 @@ def space_of(over: Mapping[str, Any], fixed: Mapping[str, Any], branch: int, dea
     numbers = {name: _number(name, value) for name, value in given.items()}
     missing = [name for name in LENGTHS if name not in over and name not in numbers]
     if missing:
-        raise TypeError(f"optimize: {missing[0]} is missing (in over= or as a number)")
+        raise TypeError(f"{caller}: {missing[0]} is missing (in over= or as a number)")
     low, high = (np.array([pair[i] for pair in ends.values()]) for i in (0, 1))
     return Space(tuple(over), low, high, {**numbers, **loads}, branch, deadline)
 
@@ -145,8 +151,12 @@ def _ends(measure: Measure, bounds: Any) -> tuple[float | None, float | None]:
 
 
 def _in_si(measure: Measure, value: Any) -> float:
-    row = Input(text_of(measure), unit_of(measure), "limit", limit="finite, or None for no limit")
-    return read(row, value, "keep")
+    return value_of(measure, value, "keep", "finite, or None for no limit")
+
+
+def value_of(measure: Measure, value: Any, caller: str, limit: str = "a finite number") -> float:
+    """A value of a measure in SI units."""
+    return read(Input(text_of(measure), unit_of(measure), "limit", limit=limit), value, caller)
 
 
 def lower_limits(key: Any, measure: Measure, bound: float) -> list[Limit]:

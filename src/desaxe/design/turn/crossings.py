@@ -46,8 +46,8 @@ def crossings(name: str, *, value: Any = 0.0, branch: int = 1, **inputs: Any) ->
 
     name    any quantity or sensitivity: a force in the rod for its reversal, "T_in", "V_C"
     value   in the quantity's unit
-    inputs  as in `evaluate`, without theta: numbers and arrays, which broadcast, for many designs; F_X and F_Y
-            may vary with the motion
+    inputs  as in `evaluate`, without theta: numbers and arrays, which broadcast, for many designs; F_X and
+            F_Y may vary with the motion
 
     Returns a dict; of several designs the last axis of arrays has the crossings, padded with NaN:
 
@@ -56,7 +56,7 @@ def crossings(name: str, *, value: Any = 0.0, branch: int = 1, **inputs: Any) ->
     side      0; at a jump through the value the side of theta, -1 or 1, on which the quantity is larger
     count     of crossings
     share     of the cycle in which the quantity is larger than the value
-    gradient  dict input -> derivatives of theta, of jumps, too
+    gradient  dict input -> derivatives of theta, of jumps, too; NaN under a function without `derivative`
     status    0; 1 the crank does not turn fully, 2 change point, 3 equal to the value at all angles, 4 bad
               input, 5 no value at some angles
 
@@ -130,8 +130,8 @@ def _of_one(cycle: Cycle, name: str, level: float) -> tuple[Crossings, int]:
     share = share if theta.size else float(sampled.max() > 0.0)
     rising = np.where(above, 1.0, -1.0)
     order = np.argsort(theta % cycle.angle)
-    found = (theta % cycle.angle, rising, np.where(is_jump, rising, 0.0))
-    return Crossings(*(part[order] for part in found), share), CrossingStatus.OK
+    side = np.where(is_jump, rising, 0.0)
+    return Crossings((theta % cycle.angle)[order], rising[order], side[order], share), CrossingStatus.OK
 
 
 def _odd(roots: Array, angle: float) -> Array:
@@ -146,12 +146,18 @@ def _odd(roots: Array, angle: float) -> Array:
 def _polished(cycle: Cycle, name: str, theta: Array, level: float) -> Array:
     """Roots after a step of Newton's method with the derived slope."""
     along = sensitivity(name, "theta")
-    if not theta.size or not has(along, "omega" in cycle.numbers):
+    if not theta.size or not _has_slope(cycle, along):
         return theta
     here = Cycle.values(cycle, [name, along], theta, np.zeros(theta.shape, int))
     with np.errstate(all="ignore"):
         step = (here[name] - level) / here[along]
     return np.asarray(np.where(np.abs(step) < LARGEST, theta - step, theta))
+
+
+def _has_slope(cycle: Cycle, along: str) -> bool:
+    """True if the slope by theta is derived, and that of each load is known."""
+    loads = cycle.loads.values()
+    return has(along, "omega" in cycle.numbers) and all(load.has_slope for load in loads)
 
 
 def _answer(
@@ -171,11 +177,12 @@ def _answer(
             column[k, : one.theta.size] = getattr(one, key)
     rows = Cycle(designs, loads, branch, turns)
     gradient = _gradient(rows, name, columns["theta"], columns["side"])
-    result = {key: column.reshape(*shape, most) for key, column in columns.items()}
-    count, share = (np.array(part).reshape(shape) for part in zip(*((c.theta.size, c.share) for c in found)))
-    result |= {"count": count if shape else int(count), "share": share if shape else float(share)}
+    result: dict[str, Any] = {key: column.reshape(*shape, most) for key, column in columns.items()}
+    numbers: dict[str, Any] = {"count": [c.theta.size for c in found], "share": [c.share for c in found]}
+    for key, of_designs in {**numbers, "status": status}.items():
+        result[key] = np.reshape(of_designs, shape) if shape else of_designs[0]
+    result["status"] = result["status"] if shape else int(status[0])
     result["gradient"] = {p: slope.reshape(*shape, most) for p, slope in gradient.items()}
-    result["status"] = status.reshape(shape) if shape else int(status[0])
     units = {"theta": unit_of("theta"), "gradient": slopes_of("theta", gradient)}
     return Answer(result, units, CrossingStatus)
 
@@ -186,7 +193,7 @@ def _gradient(cycle: Cycle, name: str, theta: Array, side: Array) -> dict[str, A
     slopes = {p: sensitivity(name, p) for p in cycle.numbers if has(sensitivity(name, p), state)}
     along = sensitivity(name, "theta")
     row, k = np.nonzero(np.isfinite(theta))
-    if not row.size or not has(along, state):
+    if not row.size or not _has_slope(cycle, along):
         return {p: np.full(theta.shape, np.nan) for p in slopes}
     here = Cycle.values(cycle, [along, *slopes.values()], theta[row, k], row)
     moves = cycle.moves([name], theta) if np.any(side[row, k]) else {}

@@ -1,0 +1,118 @@
+"""`crossings`: angles against the loop closure at 40 digits, jumps and derivatives against differences."""
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+import desaxe as dx
+
+LENGTHS = {"ec": 0.02, "AB": 0.1, "BC": 0.3}
+MACHINE = {**LENGTHS, "omega0": 10.0, "m_slider": 1.0, "m_rod": 0.5}
+
+
+def position(theta, branch, ec, AB, BC):
+    return AB * mp.cos(theta) + branch * mp.sqrt(BC**2 - (AB * mp.sin(theta) + ec) ** 2)
+
+
+# Quantity, its value, and what it is at speed 1 by the derivatives of the position.
+MOTION = [("Y", 0.31, 0), ("V_C", 0.05, 1), ("a_C", 0.0, 2), ("a_C", -0.05, 2)]
+
+
+@pytest.mark.parametrize(("name", "value", "order"), MOTION)
+@pytest.mark.parametrize("branch", [1, -1])
+def test_angles_share_and_derivatives(name, value, order, branch):
+    value = branch * value
+    found = dx.crossings(name, value=value, branch=branch, omega0=1.0, **LENGTHS)
+    with mp.workdps(40):
+        lengths = {p: mpf(v) for p, v in LENGTHS.items()}
+
+        def excess(theta, **changed):
+            side = {**lengths, **changed}
+            return mp.diff(lambda x: position(x, branch, **side), theta, order) - mpf(value)
+
+        grid = [mpf(float(x)) for x in np.linspace(0.0, 2.0 * np.pi, 401)]
+        heights = [excess(x) for x in grid]
+        roots = [
+            (mp.findroot(excess, (a, b), solver="anderson"), 1 if two > one else -1)
+            for a, b, one, two in zip(grid, grid[1:], heights, heights[1:], strict=False)
+            if one * two < 0
+        ]
+        assert found["count"] == len(roots) > 0
+        assert found["theta"].tolist() == pytest.approx([float(root) for root, _ in roots], abs=3e-15)
+        assert found["rising"].tolist() == [sign for _, sign in roots]
+        above = sum(-sign * root for root, sign in roots) + (2 * mp.pi if heights[0] > 0 else 0)
+        assert found["share"] == pytest.approx(float(above / (2 * mp.pi)), abs=1e-14)
+        h = mpf(10) ** -10
+        for p in LENGTHS:
+            for k, (root, _) in enumerate(roots):
+                ends = (
+                    mp.findroot(lambda x, s=s, p=p: excess(x, **{p: lengths[p] + s * h}), root)
+                    for s in (1, -1)
+                )
+                up, down = ends
+                assert found["gradient"][p][k] == pytest.approx(
+                    float((up - down) / (2 * h)), rel=1e-8, abs=1e-9
+                )
+
+
+def test_a_jump_of_a_load_is_a_crossing():
+    """T_in changes its sign where a die lets go, at an angle that moves with the lengths."""
+    die = dx.over_stroke(
+        [0.0, 0.03], outward=[-800.0, 0.0], inward=[0.0, 0.0], kind="step", dead_centre="outer"
+    )
+    found = dx.crossings("T_in", F_Y=die, **MACHINE)
+    (k,) = np.flatnonzero(found["side"])
+    theta = float(found["theta"][k])
+    assert theta % (2.0 * np.pi) == pytest.approx(
+        dx.inverse(s=0.03, **LENGTHS)["theta"].min() % (2.0 * np.pi), abs=1e-12
+    )
+    before, after = dx.evaluate("T_in", theta=np.array([theta - 1e-9, theta + 1e-9]), F_Y=die, **MACHINE)
+    assert before * after < 0.0
+    assert found["side"][k] == found["rising"][k] == np.sign(after)
+    for p in LENGTHS:
+        ends = []
+        for step in (1e-6, -1e-6):
+            moved = {**LENGTHS, p: LENGTHS[p] + step}
+            ends.append(float(dx.inverse(s=0.03, **moved)["theta"].min()))
+        assert found["gradient"][p][k] == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-6)
+
+
+def test_what_touches_the_value_does_not_cross_it():
+    ends = dx.events(**LENGTHS)
+    for value, share in ((ends["Y_outer"], 0.0), (ends["Y_inner"], 1.0)):
+        found = dx.crossings("Y", value=value, **LENGTHS)
+        assert (found["count"], found["status"]) == (0, 0)
+        assert found["share"] == pytest.approx(share, abs=1e-7)
+
+
+def test_statuses_and_many_designs():
+    found = dx.crossings("V_C", ec=[0.0, 0.02, 0.02, np.nan], AB=0.1, BC=[0.3, 0.3, 0.11, 0.3], omega0=10.0)
+    assert found["status"].tolist() == [0, 0, 1, 4]
+    assert found["count"].tolist() == [2, 2, 0, 0]
+    assert found["theta"].shape == (4, 2)
+    assert np.isnan(found["theta"][2:]).all()
+    one = dx.crossings("V_C", omega0=10.0, **LENGTHS)
+    np.testing.assert_array_equal(found["theta"][1], one["theta"])
+    assert one["share"] == pytest.approx(dx.events(**LENGTHS)["advance_angle"] / (2.0 * np.pi), abs=1e-14)
+    assert dx.crossings("omega", value=10.0, omega0=10.0, **LENGTHS)["status"] == 3
+    assert dx.crossings("V_C", ec=0.0, AB=0.1, BC=0.3, omega0=10.0)["theta"] == pytest.approx(
+        [0.0, np.pi], abs=1e-15
+    )
+
+
+def test_the_cycle_is_that_of_the_loads():
+    gas = dx.over_theta(lambda theta: 100.0 * np.sin(theta / 2.0), period=4.0 * np.pi)
+    found = dx.crossings("T_in", F_Y=gas, **MACHINE)
+    assert found["theta"][-1] > 2.0 * np.pi
+    turn = np.linspace(0.0, 4.0 * np.pi, 100_001)
+    above = dx.evaluate("T_in", theta=turn, F_Y=gas, **MACHINE) > 0.0
+    assert found["share"] == pytest.approx(above.mean(), abs=1e-4)
+    assert found["count"] == np.count_nonzero(np.diff(above))
+
+
+def test_the_units_of_a_machine():
+    machine = dx.Machine(units="mm, deg, rpm", ec=20, AB=100, BC=300, omega0=100)
+    found = machine.crossings("V_C", value=500)
+    assert machine.evaluate("V_C", theta=found["theta"]) == pytest.approx([500.0, 500.0], rel=1e-12)
+    with pytest.raises(TypeError, match="theta is the answer"):
+        machine.crossings("V_C", theta=1)
