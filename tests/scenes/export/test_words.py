@@ -257,10 +257,11 @@ def by_octave(folder, words):
     return run(tool("octave-cli"), "--norc", "--quiet", "--eval", code, cwd=folder)
 
 
-def by_c(folder, words, monkeypatch):
+def by_c(folder, words):
     """In the folder where headers are looked for first."""
-    monkeypatch.setenv("CPATH", str(folder))
-    loaded = [library(folder / f"{word}.c") for word in words[:3]]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("CPATH", str(folder))
+        loaded = [library(folder / f"{word}.c") for word in words[:3]]
     found = [point_values(one, word, [HERE], 1)[1][0] for one, word in zip(loaded, words, strict=False)]
     return "\n".join(map(repr, found))
 
@@ -275,7 +276,7 @@ FILES = {
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("to", FILES)
-def test_words_as_files(to, tmp_path, monkeypatch):
+def test_words_as_files(to, tmp_path):
     read, suffix = FILES[to]
     refused = words_of(to).modules
     for word in sorted(refused):
@@ -287,6 +288,6 @@ def test_words_as_files(to, tmp_path, monkeypatch):
     for word in words:
         dx.compile(scene(), tmp_path / f"{word}{suffix}", to=to)
     wanted = dx.evaluate("a_C", theta=HERE, **SIZES, omega0=157.08)
-    found = [float(line) for line in read(tmp_path, words, monkeypatch).split()]
+    found = [float(line) for line in read(tmp_path, words).split()]
     np.testing.assert_allclose(found, wanted, rtol=1e-6 if to == "jax" else 1e-13)  # float32 there
     assert len(found) >= 3
