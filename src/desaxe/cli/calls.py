@@ -19,6 +19,11 @@ CALLS = {
     "peak": ("extreme value over a turn", "a_C ec=10mm AB=125mm BC=350mm omega0=1500rpm"),
     "events": ("stroke, dead centres, time ratio, pressure angles", "ec=10mm AB=125mm BC=350mm"),
     "feasibility": ("margin, limit angles, kind of motion", "ec=10mm AB=125mm BC=350mm"),
+    "crossings": (
+        "angles at which a quantity passes through a value",
+        "V_C value=0.05 ec=10mm AB=125mm BC=350mm omega0=157",
+    ),
+    "solve": ("an input for a value of the design", "over.AB=10mm:60mm stroke=50mm ec=5mm BC=150mm"),
     "inverse": ("crank angle for a position of the slider", "Y=400mm ec=10mm AB=125mm BC=350mm"),
     "drive": ("torque, power, flywheel over a cycle", "ec=0 AB=125mm BC=350mm omega0=1500rpm m_slider=1kg"),
     "harmonics": ("Fourier series over a cycle", "a_C orders=4 ec=0 AB=125mm BC=350mm omega0=157"),

@@ -7,6 +7,7 @@ optimisation/    the best design within limits
 tolerance/       scatter from tolerances
 turn/            harmonics, balancing, flywheel: quantities over one turn
 steady/          the steady state of a machine on its motor
+solve            an input for a value of the design
 inverse          the crank angle for a slider position
 design_map       quantities over a space of designs
 measures         quantities of a design by name, with derivatives

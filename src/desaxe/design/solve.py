@@ -21,7 +21,7 @@ STEPS = 4  # of Newton's method
 LARGEST = 1e-3  # of the range: of a step
 
 
-class Sought(NamedTuple):
+class Target(NamedTuple):
     """A measure and the value that it is to have."""
 
     measure: Measure
@@ -95,7 +95,7 @@ def solve(
     return _solutions(name, sought, x, at(x), reachable)
 
 
-def _sought(where: Mapping[Any, Any] | None, inputs: dict[str, Any]) -> tuple[Sought, dict[str, Any]]:
+def _sought(where: Mapping[Any, Any] | None, inputs: dict[str, Any]) -> tuple[Target, dict[str, Any]]:
     """The measure and its value, and the inputs without it."""
     named = {name: inputs.pop(name) for name in [*inputs] if is_named(name) and inputs[name] is not None}
     every = {**(where or {}), **named}
@@ -104,7 +104,7 @@ def _sought(where: Mapping[Any, Any] | None, inputs: dict[str, Any]) -> tuple[So
         raise TypeError(f"solve takes the value of one quantity, such as stroke='50 mm'; {asked}")
     ((key, value),) = every.items()
     measure = checked(key)
-    return Sought(measure, value_of(measure, value, "solve")), inputs
+    return Target(measure, value_of(measure, value, "solve")), inputs
 
 
 def _turning(space: Space, measure: Measure) -> tuple[float, float]:
@@ -129,7 +129,7 @@ def _roots(panels: Panels, height: Array) -> Array:
     return every[np.diff(every, prepend=-1.0) > INSIDE]
 
 
-def _solutions(name: str, sought: Sought, x: Array, here: Measured, reachable: tuple[float, float]) -> Answer:
+def _solutions(name: str, sought: Target, x: Array, here: Measured, reachable: tuple[float, float]) -> Answer:
     """The answer with the derivatives of the solutions: -m_p / m_x, and 1 / m_x by the value itself."""
     order = np.argsort(x)
     with np.errstate(all="ignore"):
@@ -141,7 +141,7 @@ def _solutions(name: str, sought: Sought, x: Array, here: Measured, reachable: t
     return _with_units(name, sought, answer)
 
 
-def _none(name: str, sought: Sought, status: SolveStatus, reachable: tuple[float, float]) -> Answer:
+def _none(name: str, sought: Target, status: SolveStatus, reachable: tuple[float, float]) -> Answer:
     """The answer where there is no solution, or no end of them."""
     told = ""
     if status != SolveStatus.CANNOT_TURN:
@@ -154,11 +154,11 @@ def _none(name: str, sought: Sought, status: SolveStatus, reachable: tuple[float
     return _with_units(name, sought, {**answer, "message": message})
 
 
-def _key(sought: Sought) -> Any:
+def _key(sought: Target) -> Any:
     return sought.measure if isinstance(sought.measure, (str, tuple)) else text_of(sought.measure)
 
 
-def _with_units(name: str, sought: Sought, answer: dict[str, Any]) -> Answer:
+def _with_units(name: str, sought: Target, answer: dict[str, Any]) -> Answer:
     slopes = {p: unit_of(name, p) for p in answer["gradient"]}
     units = {name: unit_of(name), "reachable": unit_of(sought.measure), "gradient": slopes}
     return Answer(answer, units, SolveStatus)

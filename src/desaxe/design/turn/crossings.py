@@ -29,7 +29,7 @@ LARGEST = 1e-6  # rad: correction of a root by Newton's method
 
 
 class Crossings(NamedTuple):
-    """Those of one design, ascending."""
+    """The crossings of one design, ascending, and its share above the value."""
 
     theta: Array
     rising: Array
