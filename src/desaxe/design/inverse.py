@@ -118,7 +118,7 @@ def _angles(
 def _angles_at_distance(
     distance: Array, lengths: list[Array], branch: int, shape: tuple[int, ...]
 ) -> tuple[Array, NDArray[np.int8]]:
-    """Both crank angles at a distance from the outer dead centre: Newton's method mends what Y rounds away."""
+    """Both crank angles at a distance from the outer dead centre; Newton mends what Y rounds away."""
     form = closed_form(DEAD_CENTRES, ("Y_outer", "theta_outer"), branch=float(branch))
     outer, centre = (np.broadcast_to(part, shape) for part in form.arrays(*lengths))
     theta, status = _angles(outer - branch * distance, lengths, branch, shape)
