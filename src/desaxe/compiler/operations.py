@@ -63,7 +63,7 @@ COLUMNS = _FIELDS[_FIELDS.index("python") : _FIELDS.index("cost")]  # of languag
 def _row(
     name: str, signature: str, text: str, precedence: int, cost: float, exact: Callable[..., Any], **more: Any
 ) -> tuple[str, Operation]:
-    more = dict.fromkeys(COLUMNS, text) | {"llvm": _llvm_call(name, signature)} | more
+    more = dict.fromkeys(COLUMNS, text) | {"llvm": more.get("llvm") or _llvm_call(name, signature)} | more
     return name, Operation(name, signature, text, precedence, cost=cost, exact=exact, **more)
 
 
@@ -71,12 +71,8 @@ LLVM_TYPES = {"f": "double", "b": "i1", "i": "i64", "T": "{T}"}
 
 
 def _llvm_call(function: str, signature: str) -> str:
-    """A call of a function in LLVM's language; of a table it takes knots, coefficients and their number."""
-    types = {**LLVM_TYPES, "t": "ptr {%d}.x, ptr {%d}.c, i64 {%d}.n"}
-    arguments = [
-        types[letter] % (k, k, k) if letter == "t" else f"{types[letter]} {{{k}}}"
-        for k, letter in enumerate(signature[:-1])
-    ]
+    """A call of a function in LLVM's language, at one point."""
+    arguments = [f"{LLVM_TYPES[letter]} {{{k}}}" for k, letter in enumerate(signature[:-1])]
     return f"call {LLVM_TYPES[signature[-1]]} @{function}({', '.join(arguments)})"
 
 
@@ -88,7 +84,8 @@ def _table_row(
     def spelled(function: str, ends: str) -> str:
         return f"{function}({', '.join(['{0}', *(f'{{1}}_{end}' for end in ends), '{2}'])})"
 
-    columns = dict.fromkeys(COLUMNS, spelled(name, arrays[1:])) | {"llvm": _llvm_call(name, "ftff")}
+    llvm = f"call {{f}} @{name}.{{s}}({{f}} {{0}}, ptr {{1}}.x, ptr {{1}}.c, i64 {{1}}.n, {{f}} {{2}})"
+    columns = dict.fromkeys(COLUMNS, spelled(name, arrays[1:])) | {"llvm": llvm}
     columns |= {"c": spelled(name, f"{arrays[1:]}n"), "octave": spelled(octave, arrays[1:])}
     return _row(name, "ftff", f"{name}({{0}}, {{1}}, {{2}})", CALL, cost, exact, **columns)
 

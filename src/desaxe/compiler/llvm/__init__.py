@@ -4,5 +4,6 @@ ir             operations and loops as LLVM's text
 nest           a Kernel as a module: the entry, its loops, its two forms
 two_forms      loops over blocks of points of which each takes one of two forms
 functions.ll   what they call
+tables         tables.ll, the look-ups, at one point and at those of a vector
 machine        text to machine code, which the caller keeps alive
 """

@@ -20,6 +20,7 @@ from typing import NamedTuple
 from ..kernel import Kernel
 from ..program import Line
 from .ir import BYTES, STORED, WIDE, Body, Loop, loop_of
+from .tables import tables_text
 from .two_forms import APART, block_loop, either_loop
 
 NAME = "kernel"
@@ -64,12 +65,13 @@ def module_text(entry: Entry, lanes: int) -> str:
         _one_axis(frame, points)
     else:
         _nests(frame, points, tables)
-    return "\n\n".join([*_called([*texts, frame.text()]), *texts, frame.text()])
+    functions = FUNCTIONS + tables_text(lanes) if kernel.given else FUNCTIONS
+    return "\n\n".join([*_called(functions, [*texts, frame.text()]), *texts, frame.text()])
 
 
-def _called(texts: Sequence[str]) -> list[str]:
+def _called(known: str, texts: Sequence[str]) -> list[str]:
     """The declarations, and the functions that texts call: LLVM would emit the others, too."""
-    head, *functions = re.split(r"^(?=define )", FUNCTIONS, flags=re.MULTILINE)
+    head, *functions = re.split(r"^(?=define )", known, flags=re.MULTILINE)
     by_name = {re.findall(CALLED, function)[0]: function for function in functions}
     called: set[str] = set()
     new = set(re.findall(CALLED, "".join(texts))) & by_name.keys()
