@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
 from ..mechanism.inputs import INPUTS, SAFE, Input, is_good, limit_of
+from ..mechanism.load_lines import NEAR_JUMP
 from ..mechanism.messages import amount, named
 from ..mechanism.read import read_array
 from ..runtime.kernels import KernelKey, key_of, tells_unsafe
@@ -40,10 +41,15 @@ def evaluate_arrays(
     places = outputs_for(wanted.shown, shape, out)
     buffers = places if out is None else scratch_for(places, arrays.values())
     if all(buffer.size for buffer in buffers.values()):
-        scalars = {name: a.item() for name, a in arrays.items() if a.size == 1}
-        loops = loops_over({name: a for name, a in arrays.items() if a.size != 1}, shape)
+        scalars, loops = loops_of(arrays, shape)
         fill(wanted, scalars, loops, list(buffers.values()), threads)
     return copied_back(places, buffers, out is None)
+
+
+def loops_of(arrays: Mapping[str, Array], shape: tuple[int, ...]) -> tuple[dict[str, float], Loops]:
+    """Arrays that broadcast to a shape: those of one element as numbers, the others along loops."""
+    scalars = {name: a.item() for name, a in arrays.items() if a.size == 1}
+    return scalars, loops_over({name: a for name, a in arrays.items() if a.size != 1}, shape)
 
 
 def refuse_other_labels(given: Mapping[str, Any]) -> None:
@@ -137,8 +143,8 @@ def outputs_for(names: Sequence[str], shape: tuple[int, ...], out: Any) -> dict[
 
 
 def dtype_of(name: str) -> np.dtype[Any]:
-    """The dtype of an output: int8 for a status, else float64."""
-    return STATUS if name == "status" else FLOAT
+    """The dtype of an output: int8 for a status and for flags, else float64."""
+    return STATUS if name in ("status", NEAR_JUMP) else FLOAT
 
 
 def scratch_for(places: Mapping[str, Array], inputs: Collection[Array]) -> dict[str, Array]:

@@ -7,14 +7,16 @@ runs the machine code. Whatever is out of the ordinary goes the general way (`ar
 import struct
 from collections.abc import Callable, Mapping
 from ctypes import addressof, c_char
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.inputs import SAFE, is_good
+from ..mechanism.load_lines import NEAR_JUMP
 from ..mechanism.names import LENGTHS
-from ..runtime.executor import CompiledKernel, is_ready, kernel_for
+from ..runtime.executor import CompiledKernel, is_ready, kernel_for, words
 from ..runtime.kernels import key_of
 from ..runtime.request import Request
 from ..runtime.specialise import plain_form
@@ -52,19 +54,28 @@ class _Plan(NamedTuple):
 
 MOST_CALLS = 256  # requests that are remembered
 _CALLS: Recent[Request, _Call] = Recent(MOST_CALLS)
-_ONE = struct.Struct("q").pack
 
 
 def planned(
-    wanted: Request, given: Mapping[str, Any], out: Any = None, threads: int | None = None
+    wanted: Request,
+    given: Mapping[str, Any],
+    out: Any = None,
+    threads: int | None = None,
+    made: Mapping[str, Any] = MappingProxyType({}),
 ) -> dict[str, Array] | None:
-    """The values by name; None if the call is no ordinary one, or its kernel is not in memory."""
+    """The values by name; None if the call is no ordinary one, or its kernel is not in memory.
+
+    made   numbers and arrays of the tables of loads, by the names of the kernel's inputs
+    """
     call = _CALLS.get(wanted) or _new_call(wanted)
     numbers: dict[str, float] = {}
     columns: dict[str, Array] = {}
     kinds: list[bool | None] = []
     shape: tuple[int, ...] | None = None
     for name in call.inputs:
+        if name in made:
+            numbers[name] = made[name]
+            continue
         value = given.get(name)
         if type(value) is not float and (
             isinstance(value, float) or (type(value) is int and -LARGEST < value < LARGEST)
@@ -100,7 +111,7 @@ def planned(
     plan = call.plans.get(tuple(kinds)) or _new_plan(call, tuple(kinds), numbers, columns)
     if plan is None:
         return None
-    return _run(plan, numbers, columns, shape, out, threads)
+    return _run(plan, {**numbers, **made}, columns, shape, out, threads)
 
 
 def _all_wide(test: Callable[..., Any], numbers: Mapping[str, float]) -> bool:
@@ -122,7 +133,7 @@ _bytes_of = c_char.from_buffer
 
 def _run(
     plan: _Plan,
-    numbers: Mapping[str, float],
+    numbers: Mapping[str, Any],
     columns: Mapping[str, Array],
     shape: tuple[int, ...],
     out: Any,
@@ -144,20 +155,34 @@ def _run(
     places = _addresses([*given, *found.values()])
     if out is not None and _overlap(places, len(given), 8 * size):
         return None
-    data = plan.kernel.data(numbers)
+    data, tables, knots = plan.kernel.data(numbers), list[int](), list[int]()
+    for name in plan.kernel.given:
+        knots.append(numbers[f"{name}_x"].size)
+        tables += _addresses([numbers[f"{name}_x"], numbers[f"{name}_c"]])
     if size > SMALL:
-        return found if _run_in_parts(plan, places, data, size, threads) else None
-    left = plan.kernel.call(plan.pack(*places), _ONE(size), plan.steps, data)
+        return found if _run_in_parts(plan, places, (tables, knots), data, size, threads) else None
+    left = plan.kernel.call(plan.pack(*places, *tables), words([size, *knots]), plan.steps, data)
     return None if left else found
 
 
-def _run_in_parts(plan: _Plan, places: list[int], data: bytes, size: int, threads: int | None) -> bool:
-    """Run many points, on threads where that pays; False if some are left over, and then for good."""
+def _run_in_parts(
+    plan: _Plan,
+    places: list[int],
+    loads: tuple[list[int], list[int]],
+    data: bytes,
+    size: int,
+    threads: int | None,
+) -> bool:
+    """Run many points, on threads where that pays; False if some are left over, and then for good.
+
+    loads   the addresses of tables, and their numbers of knots
+    """
+    tables, knots = loads
     steps = struct.unpack(f"{len(places)}q", plan.steps)
 
     def part(start: int, stop: int) -> None:
         own = [place + start * step for place, step in zip(places, steps, strict=True)]
-        if plan.kernel.call(plan.pack(*own), _ONE(stop - start), plan.steps, data):
+        if plan.kernel.call(plan.pack(*own, *tables), words([stop - start, *knots]), plan.steps, data):
             plan.refused.append(size)
 
     run_parts(part, size, threads, least_of(len(plan.kinds)), LONGEST_BLOCK)
@@ -201,8 +226,8 @@ def _new_plan(
     if key.far or "theta" in scalars or not is_ready(key):
         return None
     kernel = kernel_for(key)
-    results = tuple((name, STATUS if name == "status" else FLOAT) for name in wanted.shown)
+    results = tuple((name, STATUS if name in ("status", NEAR_JUMP) else FLOAT) for name in wanted.shown)
     steps = [8] * len(kernel.arguments) + [kind.itemsize for _, kind in results]
-    words = struct.Struct(f"{len(steps)}q").pack
-    plan = call.plans[kinds] = _Plan(kernel, words, words(*steps), results, [])
+    pack = struct.Struct(f"{len(steps) + 2 * len(kernel.given)}q").pack
+    plan = call.plans[kinds] = _Plan(kernel, pack, words(steps), results, [])
     return plan

@@ -13,6 +13,7 @@ from math import ceil, floor, inf, nan
 from typing import TYPE_CHECKING, Any
 
 from ..mechanism.closed import TURN
+from ..mechanism.load_lines import edge_rows
 from ..support.computed import computed_once
 from ..support.forks import IMPORTS
 from .table import Arrays, Table, arrays_of, polynomial
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from ..units.system import Conversion
 
 MOST_RANGES = 16  # of angles, of which a table remembers the nodes
+ARRAYS = ("_arrays", "columns", "edge_rows")  # that are computed once
 POSITION = ("Y", "Y_wrt_theta", "Y_wrt_theta_theta")  # which piece holds: the position, and the way
 
 
@@ -61,6 +63,19 @@ class Load(ABC):
     def arrays(self) -> Arrays:
         """The knots and coefficients of a table, as a written module holds them."""
         raise TypeError(f"{self!r} is no table")
+
+    @computed_once
+    def columns(self) -> tuple[Any, Any]:
+        """The knots and the coefficients of a table, as arrays that kernels take."""
+        with IMPORTS:
+            import numpy as np
+
+        knots, rows = self.arrays()
+        return np.array(knots), np.array(rows)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The state without arrays, which are rebuilt when needed."""
+        return {name: value for name, value in self.__dict__.items() if name not in ARRAYS}
 
     tables: tuple[Table, ...] = ()  # one, or one for each way of the slider; none of a function
 
@@ -299,9 +314,13 @@ class OverY(Load):
         rows = [row for table in self.tables for row in table.rows]
         return edges, np.tile(origins, len(self.tables)), np.array(rows).T
 
-    def __getstate__(self) -> dict[str, Any]:
-        """The state without the arrays, which are rebuilt when needed."""
-        return {name: value for name, value in self.__dict__.items() if name != "_arrays"}
+    @computed_once
+    def edge_rows(self) -> Any:
+        """The coefficients of the table of distances from knots, for both ways."""
+        with IMPORTS:
+            import numpy as np
+
+        return np.array(edge_rows(self.outward.knots) * len(self.tables)).reshape(-1)
 
     @computed_once
     def largest(self) -> float:

@@ -32,6 +32,7 @@ from .pieces import Place, ahead, pieces_at
 from .stroke import NONE, OverStroke
 
 VARIABLE = ("F_X", "F_Y")  # inputs that may vary with the motion
+SPEEDS = ("omega0", "omega", "alpha")  # the crank turns in the sense of their sign
 
 
 def as_load(name: str, value: Any) -> Load:

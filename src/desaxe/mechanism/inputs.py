@@ -119,8 +119,8 @@ def names_in(*sections: str) -> tuple[str, ...]:
 
 
 def is_good(name: str, value: float) -> bool:
-    """True for a valid value of this input."""
-    least = INPUTS[name].least
+    """True for a valid value of this input, or of a kernel's input that a load gives."""
+    least = LEAST.get(name)
     return -inf < value < inf and (least is None or least <= value) and not is_beyond(name, value)
 
 

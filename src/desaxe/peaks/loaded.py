@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.under_loads.loaded import MOTION, forces_at, plan_for
+from ..evaluation.under_loads.columns import MOTION, forces_at, plan_for
 from ..evaluation.under_loads.request import table_arrays
 from ..evaluation.values import values
 from ..loads.resolve import Forces, LoadPlan

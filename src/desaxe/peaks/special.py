@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.under_loads.loaded import MOTION, values_under_loads
+from ..evaluation.under_loads.columns import MOTION
+from ..evaluation.under_loads.loaded import values_under_loads
 from ..loads.load import Load
 from ..loads.pieces import Place
 from ..loads.resolve import way_of

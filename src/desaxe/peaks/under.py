@@ -7,9 +7,10 @@ the number of its piece as an input, which the arcs of each design tell; any oth
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..evaluation.under_loads.loaded import MOTION, plan_for
+from ..evaluation.under_loads.columns import MOTION, plan_for
 from ..evaluation.under_loads.request import under_loads
 from ..loads.load import Load, OverTheta, OverY
+from ..mechanism.load_lines import LoadLines
 from .nodes import Array
 from .programs import Search
 from .special import SearchedDesigns
@@ -24,18 +25,17 @@ def search_under(search: Search, names: Sequence[str], designs: SearchedDesigns)
         return None
     inputs = {**dict.fromkeys(MOTION), "alpha": 0.0, "theta": 0.0, **designs.columns}
     _, plan = plan_for(names, {**inputs, **designs.loads})
-    under = under_loads(plan, inputs, designs.branch, "standard").form.under
+    under = under_loads(plan, inputs, designs.branch, "standard").wanted.form.under
     if under is None or len(plan.loads) < len(designs.loads):
         return None
-    lines = (
-        line._replace(held=True, ways=False) if line.over and _jumps(designs.loads[line.force]) else line
-        for line in under.loads
-    )
+    lines = (_line(line, designs.loads[line.force]) for line in under.loads)
     return search._replace(form=search.form._replace(under=under._replace(loads=tuple(lines))))
 
 
-def _jumps(load: Load) -> bool:
-    return isinstance(load, OverY) and load.jumping
+def _line(line: LoadLines, load: Load) -> LoadLines:
+    if isinstance(load, OverY):
+        return line._replace(held=True, ways=False) if load.jumping else line
+    return LoadLines(line.force, "")
 
 
 def over_theta_at(loads: Mapping[str, Load], theta: Array) -> dict[str, Any]:

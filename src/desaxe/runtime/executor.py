@@ -24,6 +24,7 @@ class CompiledKernel:
 
     arguments   the inputs that are arrays, in their order
     scalars     those that are numbers, in theirs
+    given       the tables that it looks up
     call        the entry (see `compiler.llvm.nest`), which takes packed words
     """
 
@@ -43,7 +44,7 @@ class CompiledKernel:
         self.call: Callable[[bytes, bytes, bytes, bytes], int] = _CALL(self.code.address)
         self._pack_data = struct.Struct(f"{HEAD}q{len(self.scalars)}d").pack
         self._tables = [table.along for table in kernel.tables for _ in table.kernel.outputs]
-        self._given = kernel.given
+        self.given = kernel.given
 
     def data(self, values: Mapping[str, Any], repair: int = 0, clear: int = 0) -> bytes:
         """The packed numbers of a call; `repair` and `clear` are addresses of functions (see `HEAD`)."""
@@ -60,7 +61,7 @@ class CompiledKernel:
                 import numpy as np
 
             arrays += [np.empty([lengths[axis] for axis in along]) for along in self._tables]
-        for table in self._given:
+        for table in self.given:
             arrays += [values[f"{table}_x"], values[f"{table}_c"]]
             lengths.append(values[f"{table}_x"].size)
         addresses = [array.__array_interface__["data"][0] for array in arrays]

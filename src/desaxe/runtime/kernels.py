@@ -10,6 +10,7 @@ from ..compiler.passes.trigonometry import Trigonometry
 from ..compiler.program import Line, Program
 from ..mechanism.constants import constants, double_constants
 from ..mechanism.inputs import LEAST, SAFE
+from ..mechanism.load_lines import EDGES, NEAR_JUMP
 from ..mechanism.names import LENGTHS, LOADS
 from ..mechanism.program import Variant
 from ..support.forks import IMPORTS
@@ -115,7 +116,9 @@ def kernel_of(key: KernelKey) -> Kernel:
 def tables_of(key: KernelKey) -> tuple[str, ...]:
     """The tables of a key's loads, which are arguments of its kernel."""
     under = key.form.under
-    return () if under is None else tuple(load.force for load in under.loads if load.over)
+    loads = () if under is None else tuple(load for load in under.loads if load.over)
+    edges = [load.force + EDGES for load in loads if load.jumps and NEAR_JUMP in key.names]
+    return *(load.force for load in loads), *edges
 
 
 def _loops_of(key: KernelKey) -> Kernel:
@@ -133,7 +136,7 @@ def _loops_of(key: KernelKey) -> Kernel:
     plain = plain_of(key)
     if plain is None:
         return nest(stable, axes, key.axes)
-    test = specialise(("wide_margins",), key.form, key.fixed)
+    test = specialise(("wide_margins",), key.form._replace(under=None), key.fixed)
     if tells_unsafe(key):
         test = _where_safe(test, varying)
     first = _lowered_plain(plain, varying, key)

@@ -60,7 +60,7 @@ def _decide(
     key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], axis_of: Mapping[str, int]
 ) -> None:
     reach, unsure = (np.empty(outs[0].shape) for _ in REACH)
-    kernel_for(key._replace(names=REACH)).run(values, [reach, unsure])
+    kernel_for(key._replace(names=REACH, form=key.form._replace(under=None))).run(values, [reach, unsure])
     undecided = (np.abs(reach) <= SPARE * unsure) & (unsure > 0.0)  # where that is 0, the reach is exact
     places = np.nonzero(undecided)
     chosen = {n: value[places[axis_of[n]]] if n in axis_of else value for n, value in values.items()}

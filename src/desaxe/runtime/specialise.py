@@ -5,7 +5,7 @@ from functools import lru_cache
 from ..compiler.passes.pipeline import optimise
 from ..compiler.passes.slicing import keep_outputs
 from ..compiler.program import Line, Program, names_in, renamed
-from ..mechanism.load_lines import Under
+from ..mechanism.load_lines import NEAR_JUMP, Under
 from ..mechanism.own import used_by
 from ..mechanism.program import Variant, program_of
 from ..support.forks import IMPORTS
@@ -31,7 +31,7 @@ def _specialise(
     names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...], accuracy: str
 ) -> Program:
     if form.under is not None:
-        return _under_loads(form.under, form._replace(under=None), fixed, accuracy)
+        return _under_loads(names, form.under, form._replace(under=None), fixed, accuracy)
     program = _with_extended_forms(program_of(names, form), accuracy)
     result = optimise(program, dict(fixed))
     before, after = _needs(program), _needs(result)
@@ -55,13 +55,21 @@ def _specialise(
     return optimise(whole, dict(fixed))
 
 
-def _under_loads(under: Under, form: Variant, fixed: tuple[tuple[str, float], ...], accuracy: str) -> Program:
-    """The program of the totals under loads."""
-    names = tuple(dict.fromkeys(name for _, name in under.names))
-    program = _specialise(names, form, fixed, accuracy)
-    outputs = dict(zip(names, program.outputs, strict=True))
-    every = program._replace(outputs=tuple(outputs[name] for _, name in under.names))
-    return under.added_to(every, dict(fixed))
+def _under_loads(
+    names: tuple[str, ...],
+    under: Under,
+    form: Variant,
+    fixed: tuple[tuple[str, float], ...],
+    accuracy: str,
+) -> Program:
+    """The program of the totals under loads, and of the names that follow theirs."""
+    others = names[len(under.totals) :]
+    own = [name for _, name in under.names]
+    needed = tuple(dict.fromkeys((*own, *(name for name in others if name != NEAR_JUMP))))
+    program = _specialise(needed, form, fixed, accuracy)
+    outputs = dict(zip(needed, program.outputs, strict=True))
+    every = program._replace(outputs=tuple(outputs[name] for name in (*own, *needed)))
+    return under.added_to(every, dict(fixed), [outputs.get(name, name) for name in others])
 
 
 @lru_cache(maxsize=1024)

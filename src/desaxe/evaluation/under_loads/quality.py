@@ -22,7 +22,8 @@ from ...mechanism.names import LENGTHS, sensitivity
 from ...runtime.request import several
 from ..quality import ROUNDED_ONCE, Quality, conditions_of, digits_of, evaluate_quality
 from ..values import values
-from .loaded import MOTION, evaluate_loaded, forces_at, numeric, plan_for
+from .columns import MOTION, forces_at, numeric, plan_for
+from .loaded import evaluate_loaded
 
 Array = NDArray[Any]
 ROUNDINGS = 8.0  # of a cubic and its distance from a knot

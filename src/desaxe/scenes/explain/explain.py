@@ -201,12 +201,11 @@ def _grid(content: Content, plan: Plan) -> dict[str, Any]:
 
 
 def _kernel_of(plan: Plan) -> GridKernel:
-    """The kernel of a plan, with its loops: where one goes over all points, it has the names of all axes."""
-    points = points_of(plan)
-    of = points.inside or points
+    """The kernel of a plan, with its loops."""
+    of = points_of(plan)
     sizes = tuple(plan.outer.axes[name].size for name in of.dims) or (1,)
-    if of.key.axes < len(of.dims) or not of.dims:
-        return GridKernel(of.wanted, (" x ".join(of.dims),), (prod(sizes),), of.key)
+    if not of.dims:
+        return GridKernel(of.wanted, ("",), sizes, of.key)
     return GridKernel(of.wanted, of.dims, sizes, of.key)
 
 

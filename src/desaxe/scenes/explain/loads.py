@@ -28,7 +28,7 @@ def points_of(plan: Plan) -> Points:
 def load_costs(plan: Plan, points: int, compiled: bool) -> list[LoadCost]:
     """The costs of the loads of a grid."""
     step, sizes = points_of(plan), {name: axis.size for name, axis in plan.outer.axes.items()}
-    loads = {} if step.loads is None else step.loads.loads
+    loads = {} if step.loads is None else step.loads.plan.loads
     return [_cost(name, load, step, sizes, points, compiled) for name, load in loads.items()]
 
 
@@ -41,6 +41,4 @@ def _cost(
             return LoadCost(name, angles, "a Python function, called with all angles")
         return LoadCost(name, angles, "once for each angle")
     assert isinstance(load, OverY)
-    if step.inside is None or not compiled:
-        return LoadCost(name, points, "at each point, by NumPy")
-    return LoadCost(name, points, "at each point, in a pass of the kernel")
+    return LoadCost(name, points, "at each point, by the kernel" if compiled else "at the point")
