@@ -18,6 +18,7 @@ from mkdocs.structure.files import File
 import notebooks
 
 MARK = re.compile(r"^<!-- desaxe: (\w+) ?(.*?) -->$", re.M)
+PUBLIC = re.compile(r"^\| (`(desaxe[\w.]+)`) \|", re.M)
 MATHS = re.compile(r"\$<code>(.+?)</code>\$", re.S)
 WRITERS = {writer.__name__: writer for writer in (*formulas.WRITERS, *loads.WRITERS, *reference.WRITERS)}
 
@@ -37,7 +38,8 @@ def on_files(files, config, **_):
 
 
 def on_page_markdown(markdown, **_):
-    """Replace the marks of a page before it is converted to HTML."""
+    """Replace the marks of a page before it is converted to HTML; names in tables lead to their entries."""
+    markdown = PUBLIC.sub(lambda row: f"| [{row[1]}](#{row[2].replace('.', '').lower()}) |", markdown)
     return MARK.sub(lambda found: WRITERS[found[1]](*found[2].split()), markdown)
 
 

@@ -1,8 +1,13 @@
-"""Functions, scene files, quantities and inputs, from their docstrings, types and tables."""
+"""Functions, scene files, quantities and inputs, from their docstrings, types and tables.
+
+`python docs/_site/reference.py` writes the tables of WRITTEN into their pages, between `<!-- table: NAME -->`
+and `<!-- end -->`; a test holds them fresh. The others stand on the site alone.
+"""
 
 import inspect
 import re
 from html import escape
+from pathlib import Path
 
 import desaxe as dx
 from desaxe.derive.equation import EquationText
@@ -23,7 +28,7 @@ RETURNED = (Quality, Quantity, EquationText, Simulation, Event, Scene, SceneResu
 
 def summary():
     """Every public name and the first line of what it says about itself."""
-    rows = [f"| [`{n}`](#{n.replace('.', '').lower()}) | {_first(v)} |" for n, v in _public().items()]
+    rows = [f"| `{name}` | {_first(value)} |" for name, value in _public().items()]
     return "\n".join(["| name | what it is for |", "|---|---|", *rows])
 
 
@@ -162,4 +167,16 @@ def inputs():
     return "\n".join(["| name | unit | meaning | limit |", "|---|---|---|---|", *rows])
 
 
-WRITERS = (summary, api, returned, scene, quantities, inputs, statuses)
+WRITERS = (api, returned, scene)
+WRITTEN = {writer.__name__: writer for writer in (summary, quantities, inputs, statuses)}
+TABLE = re.compile(r"(?<=^<!-- table: )(\w+)( -->\n).*?(?=^<!-- end -->$)", re.S | re.M)
+
+
+def with_tables(page):
+    """The text of a page with its tables as they are now."""
+    return TABLE.sub(lambda mark: f"{mark[1]}{mark[2]}\n{WRITTEN[mark[1]]()}\n\n", page)
+
+
+if __name__ == "__main__":
+    for path in Path(__file__).resolve().parents[1].glob("*.md"):
+        path.write_text(with_tables(path.read_text(encoding="utf-8")), encoding="utf-8")

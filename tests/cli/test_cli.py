@@ -184,7 +184,7 @@ def test_scene_that_is_wrong(tmp_path, capsys):
 
 def test_scene_that_is_fine(tmp_path, capsys):
     assert main(["scene", COMPACTOR]) == 0
-    assert capsys.readouterr().out == f"{COMPACTOR}: fine, V_C, a_C, omega_BC, alpha_BC\n"
+    assert capsys.readouterr().out == f"{COMPACTOR}: OK (outputs: V_C, a_C, omega_BC, alpha_BC)\n"
     assert main(["scene"]) == 2
     assert "give the path of a file, or --schema" in capsys.readouterr().err
     wrong = tmp_path / "wrong.toml"

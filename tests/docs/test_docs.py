@@ -119,6 +119,18 @@ def test_every_block_that_could_run_does():
     assert {"README.md", *(f"docs/{name}.md" for name in wanted)} <= set(WITH_BLOCKS)
 
 
+def test_the_tables_of_the_pages_are_fresh(monkeypatch):
+    monkeypatch.syspath_prepend(ROOT / "docs" / "_site")
+    reference, tables = import_module("reference"), []
+    for page in (ROOT / page for page in PAGES):
+        text = page.read_text(encoding="utf-8")
+        tables += [mark[1] for mark in reference.TABLE.finditer(text)]
+        assert reference.with_tables(text) == text, f"{page.name}: run `python docs/_site/reference.py`"
+        changed = text.replace("| `theta` | rad |", "| `theta` | deg |").replace("| `desaxe.grid` |", "| |")
+        assert (changed == text) or reference.with_tables(changed) == text  # it sees a stale table
+    assert sorted(tables) == sorted(reference.WRITTEN)
+
+
 @pytest.mark.thorough
 def test_the_site(tmp_path):
     """Built as strictly as there is; what is generated stands in it, and links lead somewhere."""

@@ -75,7 +75,8 @@ def _check_scene(options: argparse.Namespace) -> int:
     from ..scenes.scene import scene
 
     found = scene(options.scene)
-    print(f"{printable(options.scene)}: fine" + (f", {', '.join(found.outputs)}" if found.outputs else ""))
+    outputs = f" (outputs: {', '.join(found.outputs)})" if found.outputs else ""
+    print(f"{printable(options.scene)}: OK{outputs}")
     return 0
 
 

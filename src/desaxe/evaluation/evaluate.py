@@ -63,12 +63,12 @@ def evaluate(
     F_X, F_Y, g_X, g_Y external force on the slider [N], gravity [m/s^2]; F_X and F_Y may vary with the
              motion: `over_theta`, `over_Y`, `over_stroke` or a function of theta; derivatives are then
              total ones
-    mu       Coulomb friction of the slider's guide, against its motion or the one that alpha starts; where
-             nothing moves or starts there is none: give a tiny omega0 for the torque that sets it going
+    mu       Coulomb friction of the slider's guide, against its motion or the one that alpha starts. There
+             is none at rest; for the breakaway torque pass a tiny omega0
     accuracy "standard": within 8 ulp x (1 + the sum of condition numbers), next to singular points too;
              "extended": within 2 ulp, in pairs of doubles, 3 to 16 times the time; or the error that you can
              bear, such as 1e-14, for the cheaper of the two that keeps it
-    threads  for arrays: how many threads share the work, all that pay without
+    threads  for arrays: the number of threads; by default as many as speed it up
     out      for arrays: the array to fill, or a dict name -> array; those that share memory are filled one
              after the other
     quality  True: for each name, in place of the value, an object with `value`, `conditions` (input ->

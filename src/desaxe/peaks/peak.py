@@ -56,7 +56,7 @@ def peak(
 
     kind    "absmax" (the largest magnitude), "max" or "min"
     theta   range of crank angles [rad]; its ends count. By default a turn, or those until the loads repeat
-    threads the number that share the work, by default all that pay; the result is the same
+    threads the number of threads, by default as many as speed it up; the result is the same
     others  as in `evaluate`, masses and loads among them. F_X and F_Y may vary with the motion; at a jump
             both one-sided limits count, at an end of the range that from within and the value itself.
             `gradient` by such a force is that by a constant added to it

@@ -211,7 +211,7 @@ def _entries(asked: Any) -> Mapping[Any, Any]:
     if alone and all(_measure(one) is not None for one in alone):
         return {"theta": alone}
     if not isinstance(asked, Mapping) or not asked:
-        raise TypeError(f"reduce = {shown(asked)}: an axis and what is taken of it, such as {EXAMPLE}")
+        raise TypeError(f"reduce = {shown(asked)}: it must map an axis to a reduction, such as {EXAMPLE}")
     return asked
 
 

@@ -77,6 +77,7 @@ def _row(words: str, name: str, found: Mapping[str, Any], units: UnitSystem) -> 
         in_unit(units, name, found["value"]),
         unit_of(units, name),
         in_unit(units, name, found["monte_carlo"]["std"]),
-        f"{ends[0]} to {ends[1]}" + ("" if not worst or worst["guaranteed"] else ", not proved"),
+        f"{ends[0]} to {ends[1]}"
+        + ("" if not worst or worst["guaranteed"] else " (corner estimate, not guaranteed)"),
         ", ".join(driven),
     )
