@@ -18,7 +18,13 @@ PRESS = dx.Machine(**SI).replace(
 NARROW = {"ec": (0, 0.06), "AB": (0.02, 0.05)}
 TORQUE = {"torque": 50.0, "t_end": 0.05, "times": [0.0, 0.05], "mu": 0.0}
 CALLS = {
-    "evaluate": {"names": ["Y", "a_C", "T_in_wrt_ec", "status"], "theta": 1.0},
+    "evaluate": {
+        "names": [
+            "Y", "V_C", "a_C", "j_C", "phi", "omega_BC", "alpha_BC", "T_in", "N_C", "kinetic_energy",
+            "a_C_wrt_ec", "T_in_wrt_AB", "a_C_wrt_theta", "V_C_wrt_omega0", "phi_wrt_ec", "status",
+        ],
+        "theta": 1.0,
+    },
     "peak": {"name": "a_C"},
     "events": {},
     "feasibility": {},

@@ -42,19 +42,6 @@ def test_plain_numbers_are_the_doubles_of_texts():
     assert PRESS.replace(units="cm").in_units()["AB"] == 5.0
 
 
-@pytest.mark.parametrize(
-    "name", ["Y", "V_C", "a_C", "j_C", "phi", "omega_BC", "alpha_BC", "T_in", "N_C", "a_C_wrt_ec",
-             "T_in_wrt_AB", "a_C_wrt_theta", "V_C_wrt_omega0", "phi_wrt_ec", "kinetic_energy"],
-)  # fmt: skip
-def test_answers_are_those_in_si_units(name):
-    theta = np.array([20.0, 60.0, 200.0])
-    shown = PRESS.evaluate(name, theta=theta)
-    wanted = dx.evaluate(name, theta=np.radians(theta), **SI)
-    np.testing.assert_allclose(si(name, shown), wanted, rtol=1e-13, atol=1e-13 * np.abs(wanted).max())
-    point = PRESS.evaluate(name, theta=60)
-    assert point == pytest.approx(shown[1], rel=1e-12)
-
-
 def test_only_what_is_named_changes():
     units = PRESS.units
     assert [units.of(n).unit for n in ("Y", "V_C", "a_C", "phi", "omega_BC")] == [
@@ -81,16 +68,13 @@ def test_only_what_is_named_changes():
     assert own["AB"] == 0.05
 
 
-def test_motions():
-    how = {"torque": 50.0, "t_end": 0.2, "I_crank": 0.5, "names": ["Y"], "times": [0.0, 0.1]}
+def test_the_solution_of_a_motion():
+    how = {"torque": 50.0, "t_end": 0.2, "I_crank": 0.5, "times": [0.0, 0.1]}
     shown = PRESS.simulate(theta0=10, omega_start=60, **how)
     bodies = {k: v for k, v in SI.items() if k != "omega0"}
     plain = dx.simulate(theta0="10 deg", omega_start=60 * RPM, **how, **bodies)
-    np.testing.assert_allclose(shown["omega"], plain["omega"] / RPM, rtol=1e-10)
     angles = [one["solution"](0.05)["theta"] for one in (shown, plain)]
     assert angles[0] == pytest.approx(math.degrees(angles[1]), rel=1e-9)
-    for one, other in zip(shown["events"], plain["events"], strict=True):
-        assert one.theta == pytest.approx(math.degrees(other.theta), rel=1e-9)
 
 
 def test_a_motion_starts_at_the_speed_of_the_machine():

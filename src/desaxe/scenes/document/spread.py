@@ -69,6 +69,7 @@ def spread(content: Content, units: UnitSystem, tolerances: Mapping[str, float])
 def _row(words: str, name: str, found: Mapping[str, Any], units: UnitSystem) -> tuple[str, ...]:
     worst, shares = found["worst_case"], found["contributions"]
     ends = [in_unit(units, name, worst[end]) for end in ("lower", "upper")] if worst else [NONE, NONE]
+    estimate = "" if not worst or worst["guaranteed"] else " (corner estimate, not guaranteed)"
     driven = [
         f"{n} {100.0 * share:.0f} %" for n, share in shares.items() if not isnan(share) and share >= 0.005
     ]
@@ -77,7 +78,6 @@ def _row(words: str, name: str, found: Mapping[str, Any], units: UnitSystem) -> 
         in_unit(units, name, found["value"]),
         unit_of(units, name),
         in_unit(units, name, found["monte_carlo"]["std"]),
-        f"{ends[0]} to {ends[1]}"
-        + ("" if not worst or worst["guaranteed"] else " (corner estimate, not guaranteed)"),
+        f"{ends[0]} to {ends[1]}{estimate}",
         ", ".join(driven),
     )
