@@ -24,7 +24,7 @@ _STANDARD = ("concurrent.futures", "math", "os", "threading", "typing")
 _IMPORT = re.compile(r"^(?: {4})?from ([^.\s]\S*) import (?:\(([^)]*)\)|(.*))$", re.MULTILINE)
 # A function with its decorators, or an assignment; comments above go with it.
 _STATEMENT = re.compile(
-    r"(?:^[#@].*\n)*^(def )?(\w[\w, ]*)(?:\(| = |: ).*\n(?:[ )\]}].*\n|\n(?=[ \n]))*", re.MULTILINE
+    r"(?:^[#@].*\n)*^(?!from )(def )?(\w[\w, ]*)(?:\(| = |: ).*\n(?:[ )\]}].*\n|\n(?=[ \n]))*", re.MULTILINE
 )
 _SILENT = re.compile(r'""".*?"""|#[^\n]*', re.DOTALL)
 _WORD = re.compile(r"[.=@]?[^\W\d]\w*(?:\(|\.py_func)?")

@@ -6,7 +6,6 @@ nodes        the crank angles at which a search starts
 search       the search, in arrays
 steps        its straight lines: a bound, a first guess, a step of Newton's method
 evaluations  value, slope and gradient in machine code
-loops        the search in plain loops, for written modules
 special      special designs: limit angles, stall, friction
 designs      the search over all designs of a request
 loaded       value, slope and gradient under loads that vary with the motion

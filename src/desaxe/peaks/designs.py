@@ -30,8 +30,7 @@ from .jumps import at_jumps
 from .loaded import Rows, ValuesUnderLoads
 from .nodes import Array, classes, shared_nodes
 from .programs import Search, needs_own
-from .search import search as search_block
-from .search import zeros
+from .search import search_block, sign_changes_of
 from .special import (
     AT_KINK,
     USABLE,
@@ -281,12 +280,14 @@ class PartialSearch:
             part = rows[first : first + size]
             own = nodes if nodes.shape[1] == 1 else nodes[:, first : first + size]
             block = quantity.block(self.designs, part)
-            self.theta[part], self.out[:, part] = search_block(quantity, kind, own, block)
+            self.theta[part], self.out[:, part] = search_block(
+                quantity.curve, quantity.finish, kind, own, block
+            )
 
     def _rubbing(self, rows: Rows, nodes: Array, key: Search) -> Array:
         """The nodes of friction, a row a design; where loads have a kink or jump there are some."""
         side = self._quantity("N_C", key._replace(name="N_C", parameters=()))
-        turns = zeros(side, nodes, side.block(self.designs, rows))
+        turns = sign_changes_of(side.curve, nodes, side.block(self.designs, rows))
         for marks in self._marks(rows):
             turns[(np.abs(turns[:, :, None] - marks[:, None]) <= AT_KINK).any(axis=2)] = np.nan
         return rubbing_nodes(self.designs.part(rows), turns)

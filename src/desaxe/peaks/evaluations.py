@@ -69,7 +69,7 @@ def totals_of(search: Search) -> tuple[TotalsFunction, TotalsFunction]:
 
 
 class Evaluations:
-    """The quantity of a search (see `search.Curve`), for blocks of its `inputs`."""
+    """The quantity of a search, for blocks of its `inputs` (see `search`)."""
 
     def __init__(self, search: Search) -> None:
         """Compile it."""

@@ -12,6 +12,7 @@ STEP   of Newton's method on the slope, whose derivative is that of the quartic 
 """
 
 from functools import cache
+from typing import Any
 
 from ..compiler.text import read_function
 from .evaluations import ProgramFunction
@@ -84,8 +85,22 @@ def step(x, slope, low, high, sign, width, size, bend, last_x, last_slope):
 """
 
 
+def upper_bounds(*arrays: Any) -> Any:
+    """BOUND of arrays that broadcast."""
+    return _compiled(BOUND).call(*arrays)
+
+
+def first_guess(*arrays: Any) -> Any:
+    """GUESS of arrays that broadcast."""
+    return _compiled(GUESS).call(*arrays)
+
+
+def newton_step(*arrays: Any) -> Any:
+    """STEP of arrays that broadcast."""
+    return _compiled(STEP).call(*arrays)
+
+
 @cache
-def compiled(text: str) -> ProgramFunction:
-    """BOUND, GUESS or STEP as a function of arrays that broadcast."""
+def _compiled(text: str) -> ProgramFunction:
     program = read_function(text)
     return ProgramFunction(program, program.inputs)

@@ -10,11 +10,12 @@ from os import cpu_count
 
 from numpy import (
     arange,
-    array,
     asarray,
     ascontiguousarray,
+    broadcast_shapes,
     broadcast_to,
     empty,
+    errstate,
     float64,
     int8,
     isfinite,
@@ -77,6 +78,20 @@ def require_turning(columns, low, high):
         raise ValueError(f"{design}: it stalls or cannot turn fully, which needs desaxe.peak")
 
 
+TABLES = "void(float64[:, ::1], float64[:, ::1])"
+DESIGNS = 256  # of a block, whose arrays stay in the cache
+
+
+def by_points(loops, rows, arrays):
+    """Run loops over the points of arrays that broadcast; a row for each result."""
+    shape = broadcast_shapes(*(values.shape for values in arrays))
+    given, out = empty((len(arrays), *shape)), empty((rows, *shape))
+    for row, values in zip(given, arrays, strict=True):
+        row[...] = values
+    compiled(loops, TABLES)(given.reshape(len(arrays), -1), out.reshape(rows, -1))
+    return out if rows > 1 else out[0]
+
+
 def extremum(one, given, threads):
     """The peaks of all designs: of the scene's axes, with those that are given in their places."""
     axes = with_axes(one["axes"], given)
@@ -93,13 +108,21 @@ def extremum(one, given, threads):
     table = empty((len(one["inputs"]), size))
     for row, name in zip(table, one["inputs"], strict=True):
         row[:] = columns[name]
-    nodes = nodes_between(low, high)
-    order, edges = arange(size), array([0, nodes.size])
+    margin = (columns["BC"] - columns["AB"] - abs(columns["ec"])) / columns["AB"]
+    nodes = nodes_between(low, high, margin.min())[:, None]
     theta, out = empty(size), empty((one["rows"], size))
-    search = compiled(one["search"], one["signature"])
+
+    def curve(angles, own):
+        return by_points(one["curve"], 2, (angles, *own))
+
+    def finish(angles, own):
+        return by_points(one["finish"], one["rows"], (angles, *own))
 
     def block(start, stop):
-        search(table, order, array([start, stop]), nodes, edges, empty(0), one["kind"], theta, out)
+        with errstate(all="ignore"):
+            for first in range(start, stop, DESIGNS):
+                part = slice(first, min(first + DESIGNS, stop))
+                theta[part], out[:, part] = search_block(curve, finish, one["kind"], nodes, table[:, part])
 
     in_blocks(block, size, 1_000 * size, threads)
     value = abs(out[0]) if one["kind"] == 0 else out[0]

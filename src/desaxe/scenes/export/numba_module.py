@@ -36,7 +36,7 @@ from .entry_points import (
 )
 from .loaded import require_tables, table_text
 from .made import Made, limit_of
-from .peaks import left_out_of_module, peak_texts
+from .peaks import SEARCH, left_out_of_module, peak_texts
 from .portable import WITHOUT_VALUE, PortableRequest, asked_of, require_outputs
 
 WIDTH = 96
@@ -66,11 +66,11 @@ def text_of(scene: Scene, name: str = "my_kernels.py") -> str:
             [
                 *kernels.parts,
                 scalars,
-                *peaks.searches,
+                *peaks.loops,
             ],
         ),
     ]
-    compiles = bool(inputs or peaks.searches)
+    compiles = bool(inputs or peaks.loops)
     limit = None if key.far else limit_of(key)
     calls = [] if inputs else fixed_functions()
     if inputs:
@@ -96,8 +96,9 @@ def text_of(scene: Scene, name: str = "my_kernels.py") -> str:
 
 # Where the names come from that stand in the functions that people call.
 _NUMPY = (
-    "append", "arange", "array", "asarray", "ascontiguousarray", "broadcast_arrays", "broadcast_to", "empty",
-    "float64", "floor", "fmax", "int8", "isfinite", "linspace", "searchsorted", "unique", "where", "zeros",
+    "append", "arange", "array", "asarray", "ascontiguousarray", "broadcast_arrays", "broadcast_shapes",
+    "broadcast_to", "empty", "errstate", "float64", "floor", "fmax", "int8", "isfinite", "linspace",
+    "searchsorted", "unique", "where", "zeros",
 )  # fmt: skip
 IMPORTS = {
     **MATH, **dict.fromkeys(_NUMPY, "numpy"), "ThreadPoolExecutor": "concurrent.futures", "prod": "math",
@@ -107,7 +108,7 @@ IMPORTS = {
 
 def _front(parts: Sequence[str]) -> Parts:
     """Parts that people call, and the functions behind them."""
-    return with_sources(parts, (FUNCTIONS,), imports=IMPORTS)
+    return with_sources(parts, (FUNCTIONS, SEARCH), imports=IMPORTS)
 
 
 def _order(content: Content, shown: Sequence[str]) -> tuple[str, ...]:

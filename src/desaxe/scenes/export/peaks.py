@@ -1,30 +1,32 @@
 """Peaks of a scene in a written module: the search over the crank angle, for designs that turn fully.
 
-The module has the text of the search (`desaxe.peaks`) as it is, and one set of nodes that is dense enough for
-every design, since their number grows with the logarithm of the margin only. Peaks that need nodes of their
-own (friction, a load that varies, designs that stall or cannot turn fully) are left out, by name.
+The module has the text of the search (`desaxe.peaks.search`) as it is, and nodes by the smallest margin of
+the designs of a call. Peaks that need other nodes (friction, a load that varies, designs that stall or cannot
+turn fully) are left out, by name.
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from textwrap import wrap
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...compiler.builder import Parts, functions_of, renamed
-from ...compiler.languages.numba import peaks
-from ...compiler.languages.numba.module import CALLABLE, numba_parts, signature
+from ...compiler.builder import Parts, function_text
+from ...compiler.languages.numba.module import CALLABLE, numba_parts
+from ...compiler.program import Program
+from ...compiler.text import INDENT, read_function, with_short_temporaries, write_lines
 from ...evaluation.arrays import as_array
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
 from ...mechanism.own_lines import has_kinks
-from ...peaks import loops, special
+from ...peaks import search, special
 from ...peaks.designs import KINDS, PeakPlan, plan_of, search_of
-from ...peaks.nodes import FINEST, graded
-from ...peaks.programs import Search, SearchPrograms, programs_of
+from ...peaks.nodes import FINEST, KEPT_APART, graded
+from ...peaks.programs import Search, programs_of
+from ...peaks.steps import BOUND, GUESS, STEP
 from ...support.template import filled
 from ...sweeps.peak_step import WORDS
 from ..content import Content, Peak
@@ -32,10 +34,8 @@ from ..parts.extremes import columns_of, group_names
 from .axes import arguments_of, axis_rows, number_rows, text_file
 from .portable import left_out
 
-ROW, ROWS = "types.float64[::1]", "types.float64[:, ::1]"
-INDICES = "types.int64[::1]"
-SEARCH = Path(loops.__file__)
-OWN = ("sweep", "points", "finish", "search", "WORK")  # of each search
+SEARCH = Path(search.__file__)
+STEPS = {"upper_bounds": BOUND, "first_guess": GUESS, "newton_step": STEP}
 
 
 class ExportedPeak(NamedTuple):
@@ -48,9 +48,9 @@ class ExportedPeak(NamedTuple):
 
 
 class PeakTexts(NamedTuple):
-    """The searches; the functions, as text; their names and meanings."""
+    """The loops that are compiled; the functions, as text; their names and meanings."""
 
-    searches: list[Parts]
+    loops: list[Parts]
     functions: list[str]
     lines: list[str]
 
@@ -93,41 +93,46 @@ def _special(plan: PeakPlan, one: Peak, content: Content) -> bool:
 def peak_texts(content: Content) -> PeakTexts:
     """The text of the peaks of a scene; nothing where it has none, or none that a module can have."""
     found = carried(content)
+    if not found:
+        return PeakTexts([], [], [])
     searches: dict[Search, str] = {}
     for one in found:
         searches.setdefault(one.search, f"search{len(searches)}")
-    sources = [_search_parts(search, prefix) for search, prefix in searches.items()]
+    loops, calls = [], []
+    for name, text in STEPS.items():
+        program = read_function(text)
+        loops.append(_loops(f"{name}_loops", program, program.inputs))
+        calls.append(filled(text_file("by_points"), NAME=name, ROWS=str(len(program.outputs))))
+    for key, prefix in searches.items():
+        curve, finish, inputs = programs_of(key)
+        loops += [
+            _loops(f"{prefix}_{name}", program, ("theta", *inputs))
+            for name, program in (("curve", curve), ("finish", finish))
+        ]
     rows = [_table_row(one, searches[one.search]) for one in found]
-    functions = [_nodes_text(), "".join(["PEAKS = {\n", *rows, "}"])] if found else []
     state = "omega" in content.inputs
+    functions = [*calls, _nodes_text(), "".join(["PEAKS = {\n", *rows, "}"])]
     functions += [_function(one, state) for one in found]
     lines = [f"{one.name}(): {_meaning(one, state)}" for one in found]
-    return PeakTexts(sources, functions, lines)
+    return PeakTexts(loops, functions, lines)
 
 
-def _search_parts(search: Search, prefix: str) -> Parts:
-    """A search under names of its own; what it shares with others is called so."""
-    functions = functions_of(SEARCH)
-    kinds = (ROWS, INDICES, INDICES, ROW, INDICES, ROW, "types.int64", ROW, ROWS)
-    own = [*texts_of(programs_of(search)), functions["search"]]
-    words = {name: prefix if name == "search" else f"{prefix}_{name}" for name in OWN}
-    parts = [renamed(text, words) for text in own] + [signature(f"{prefix}_signature", "void", kinds)]
-    shared = {name: f"search_{name}" for name in functions}
-    found = numba_parts(parts, SEARCH, jit=CALLABLE)
-    return found._replace(texts=tuple(renamed(text, shared, called=True) for text in found.texts))
-
-
-def texts_of(programs: SearchPrograms) -> list[str]:
-    """`sweep`, `points` and `finish`, and the rows that `sweep` keeps."""
-    rows = peaks.Rows(programs.inputs, "theta")
-    sweep, work = peaks.sweep_function(programs.curve, rows)
-    points = peaks.points_function(programs.curve, rows)
-    finish = peaks.finish_function(programs.finish, rows)
-    return [f"WORK = {max(work, 1)}\n", sweep, points, finish]
+def _loops(name: str, program: Program, inputs: Sequence[str]) -> Parts:
+    """`<name>(given, out)`: a program at points, from a row for each input to one for each output."""
+    program = with_short_temporaries(program)
+    body = [f"{n} = given[{k}, i]" for k, n in enumerate(inputs) if n in program.inputs]
+    body += write_lines(program, "numba")
+    body += [f"out[{k}, i] = {n}" for k, n in enumerate(program.outputs)]
+    loop = ["for i in range(uint64(out.shape[1])):", *(INDENT + row for row in body)]
+    return numba_parts([function_text(name, ["given", "out"], loop)], jit=CALLABLE)
 
 
 def _nodes_text() -> str:
-    return filled(text_file("nodes"), DISTANCES=number_rows(graded(FINEST), 90))
+    rows = []
+    for number in KEPT_APART.tolist():
+        least = 0.0 if number == FINEST else 4.0**-number
+        rows += [f"{least!r}: array([", *(INDENT + row for row in number_rows(graded(number), 86)), "]),"]
+    return filled(text_file("nodes"), DISTANCES=rows)
 
 
 def _table_row(one: ExportedPeak, prefix: str) -> str:

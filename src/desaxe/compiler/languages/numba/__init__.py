@@ -7,5 +7,4 @@ two_forms   the inner loops of a kernel that has a plain and a stable form
 lookups     the inner loops of a kernel that looks tables up
 reductions  kernels that keep the largest, the mean, ... of the innermost axis
 sources/    functions whose text goes into a module
-peaks       the functions of a quantity that a search over theta calls
 """
