@@ -154,3 +154,38 @@ def test_a_load_may_be_a_function_of_one_angle():
     one, other = (dx.drive(fluctuation=0.02, F_Y=f, **PRESS) for f in (load, np.vectorize(load)))
     for name in ("torque_rms", "work_in", "flywheel_inertia"):
         assert one[name] == pytest.approx(other[name], rel=1e-12)
+
+
+def test_half_orders_of_a_four_stroke_load():
+    """A load of two turns has orders 0, 1/2, 1, ...: midpoint sums over both."""
+    gas = dx.over_theta(lambda theta: 900.0 * np.exp(np.cos(theta / 2.0 - 0.2)), period=4.0 * np.pi)
+    found = dx.harmonics("T_in", orders=3, F_Y=gas, **PRESS)
+    assert found["order"].tolist() == [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0]
+    angles = (np.arange(8192) + 0.5) * 4 * np.pi / 8192
+    value = dx.evaluate("T_in", theta=angles, F_Y=gas, **PRESS)
+    series = np.zeros_like(value)
+    for k, order in enumerate(found["order"]):
+        scale = 2.0 if k else 1.0
+        for wave, part in ((np.cos, "cos"), (np.sin, "sin")):
+            assert found[part][k] == pytest.approx(scale * np.mean(value * wave(order * angles)), abs=1e-9)
+            series += found[part][k] * wave(order * angles)
+    assert found["remainder"] == pytest.approx(np.sqrt(np.mean((value - series) ** 2)), rel=1e-9)
+    outside = dx.counterweight(loads=True, F_Y=gas, **PRESS)
+    X, Y = (dx.evaluate(f"F_shaking_{axis}", theta=angles, F_Y=gas, **PRESS) for axis in "XY")
+    for axis, force in (("X", X), ("Y", Y)):
+        assert outside["before"][axis] == pytest.approx(
+            2 * abs(np.mean(force * np.exp(-1j * angles))), rel=1e-9
+        )
+
+
+def test_a_share_of_the_force_along_the_slider_axis():
+    for along, share in (("X", 0.0), ("both", 0.5), ("Y", 1.0)):
+        assert dx.counterweight(balance=share, **PRESS) == dx.counterweight(along=along, **PRESS)
+    found = dx.counterweight(balance=0.7, **PRESS)
+    _, Y = with_weight(found["product"], found["angle"])
+    in_line = dx.counterweight(ec=0, AB=0.05, BC=0.2, omega0=100.0, m_slider=0.4, balance=0.7)
+    assert in_line["product"] == pytest.approx(0.7 * 0.4 * 0.05, rel=1e-12)
+    assert abs(first(Y)) == pytest.approx(found["after"]["Y"], abs=1e-9)
+    for wrong in (-0.1, 1.1, "1 m"):
+        with pytest.raises(ValueError, match=r"balance.*share|balance"):
+            dx.counterweight(balance=wrong, **PRESS)

@@ -21,10 +21,11 @@ from ...mechanism.read import read
 from ...support.answer import Answer
 from ...support.panels import RESOLVED, Array, resolved
 from ...support.shown import shown
-from .turn import Turn, check_range, one_turn
+from .turn import Turn, check_range, turning
 
-ALONG = {"both": 0.0, "Y": 1.0, "X": -1.0}
+ALONG = {"both": 0.5, "Y": 1.0, "X": 0.0}  # what share of the force along Y is balanced
 FORCES = ("F_shaking_X", "F_shaking_Y")
+BALANCE = Input("balance", "1", "share of the first harmonic along Y", 0.0, "a share from 0 to 1")
 RADIUS = Input("radius", "m", "from the crank centre to the counterweight", TINY, "a length > 0")
 # Of exp(i n theta), of exp(-i n theta), their error, and the largest force under a counterweight.
 Harmonics = tuple[Any, Any, float, Callable[[complex], float]]
@@ -32,12 +33,20 @@ Harmonics = tuple[Any, Any, float, Callable[[complex], float]]
 
 @with_known_keywords
 def counterweight(
-    *, along: str = "both", radius: Any = None, loads: bool = False, branch: int = 1, **inputs: Any
+    *,
+    along: str = "both",
+    balance: Any = None,
+    radius: Any = None,
+    loads: bool = False,
+    branch: int = 1,
+    **inputs: Any,
 ) -> dict[str, Any]:
     """The counterweight on the crank that balances the first harmonic of the shaking force best.
 
     along   "both": the largest first-harmonic force in any direction is made as small as possible, which
             leaves one of constant size that turns against the crank; "Y" or "X": none is left along that axis
+    balance in place of `along`: the share of the first harmonic along Y that is balanced, 0 ("X") to 1 ("Y");
+            what turns with the crank is balanced whole, 0.5 ("both") is the rule for one cylinder
     radius  of the counterweight's centre of mass [m], to compute its mass
     loads   False: F_X and F_Y act between slider and frame, as gas in a cylinder does, and do not shake the
             foundation; True: they come from outside of the machine, and do
@@ -68,14 +77,17 @@ def counterweight(
     """
     if not isinstance(along, str) or along not in ALONG:
         raise ValueError(f"along = {shown(along)}: it is one of {', '.join(ALONG)}")
+    share = ALONG[along] if balance is None else read(BALANCE, balance, "counterweight", "a share")
+    if not share <= 1.0:
+        raise ValueError(f"balance = {shown(balance)}: it must be {BALANCE.limit}")
     if not loads:
         inputs = {name: value for name, value in inputs.items() if name not in VARIABLE}
-    turn = one_turn("counterweight", inputs, branch)
+    turn = turning("counterweight", inputs, branch)
     speed = turn.numbers.get("omega0")
     if not speed:
         raise ValueError("counterweight: omega0 is missing or 0, and a crank at rest shakes nothing")
     forward, backward, error, peak = _harmonics(turn)
-    weight = -(forward[1] + ALONG[along] * np.conj(backward[1]))
+    weight = -(forward[1] + (2.0 * share - 1.0) * np.conj(backward[1]))
     before = _shaking(forward[1], backward[1], forward[2], backward[2], peak(0.0))
     after = _shaking(forward[1] + weight, backward[1], forward[2], backward[2], peak(weight))
     product = abs(weight) / speed**2
@@ -102,7 +114,7 @@ def _harmonics(turn: Turn) -> Harmonics:
     panels = turn.panels(FORCES)
     z = panels.values["F_shaking_Y"] + 1j * panels.values["F_shaking_X"]
     forward, backward = (
-        [panels.integral(z * np.exp(-way * n * panels.x)) / (2.0 * pi) for n in range(3)] for way in (1j, -1j)
+        [panels.integral(z * np.exp(-way * n * panels.x)) / turn.angle for n in range(3)] for way in (1j, -1j)
     )
 
     def peak(weight: complex) -> float:

@@ -10,7 +10,7 @@ from ...mechanism.quantity_units import unit_of
 from ...support.answer import Answer
 from ...support.checks import whole_number
 from ...support.panels import NODES, RESOLVED, WEIGHT, WIDEST, Array, Panels
-from .turn import one_turn
+from .turn import turning
 
 WAVES = 4.0  # rad of the highest wave in a panel of 16 nodes: what Gauss's rule integrates to rounding
 MOST = 2048  # orders
@@ -19,18 +19,18 @@ BLOCK = 64  # panels whose waves are in memory at a time
 
 @with_known_keywords
 def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> dict[str, Any]:
-    """The harmonics of a quantity over a turn at constant speed.
+    """The harmonics of a quantity over a cycle at constant speed.
 
     name    any quantity or sensitivity, such as "F_shaking_Y", "T_in" or "a_C"
     orders  the highest harmonic
-    inputs  of one design, as in `evaluate`; F_X and F_Y may vary with the motion
+    inputs  of one design, as in `evaluate`; F_X and F_Y may vary with the motion, and repeat after n turns
 
-    Returns a dict; the quantity is mean + sum over n of cos[n] cos(n theta) + sin[n] sin(n theta):
+    Returns a dict; the quantity is mean + sum over orders n > 0 of cos cos(n theta) + sin sin(n theta):
 
-    order              0, 1, ..., orders
+    order              0, 1, ..., orders; under loads that repeat after n turns 0, 1/n, 2/n, ..., orders
     cos, sin           coefficients by order, in the quantity's unit; cos[0] is the mean
-    amplitude, phase   the same as amplitude cos(n theta - phase) [rad]
-    mean               over the turn
+    amplitude, phase   the same as amplitude cos(order theta - phase) [rad]
+    mean               over the cycle
     remainder          root of the mean square of all higher harmonics: what these orders leave out
     error              bound of the error of each coefficient: how far the panels were refined
     points             angles that this took
@@ -49,13 +49,14 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
     if name == "status":
         raise ValueError("status is not a real number")
     orders = whole_number("orders", orders, 0, MOST)
-    turn = one_turn("harmonics", inputs, branch)
+    turn = turning("harmonics", inputs, branch)
     panels = turn.panels([name], widest=min(WIDEST, WAVES / (orders + 1)))
-    c, remainder = _series(panels, panels.values[name], orders)
-    scale = np.where(np.arange(orders + 1) == 0, 1.0, 2.0)
+    order = np.arange(orders * turn.turns + 1)
+    c, remainder = _series(panels, panels.values[name], turn.turns, order.size)
+    scale = np.where(order == 0, 1.0, 2.0)
     cosine, sine = scale * c.real, -scale * c.imag
     series: dict[str, Any] = {
-        "order": np.arange(orders + 1),
+        "order": order if turn.turns == 1 else order / turn.turns,
         "cos": cosine,
         "sin": sine,
         "amplitude": np.hypot(cosine, sine),
@@ -69,23 +70,23 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
     return Answer(series, {**own, "phase": unit_of("phase")})
 
 
-def _series(panels: Panels, value: Array, orders: int) -> tuple[Array, float]:
-    """The complex coefficients of exp(i n theta), and the root of the mean square of what they leave out."""
-    weight, side = panels.half * WEIGHT / (2.0 * np.pi), int(np.ceil(np.sqrt(orders + 1)))
+def _series(panels: Panels, value: Array, turns: int, count: int) -> tuple[Array, float]:
+    """The complex coefficients of exp(i k theta/turns), and the root mean square of what they leave."""
+    weight, side = panels.half * WEIGHT / (2.0 * np.pi * turns), int(np.ceil(np.sqrt(count)))
     blocks = [slice(k, k + BLOCK) for k in range(0, len(value), BLOCK)]
 
     def waves(part: slice) -> list[Array]:
-        """exp(i n theta) of n < side, and of the first multiples of side: their products are all of them."""
-        x = panels.x[part].ravel()
+        """exp(i k theta/turns) of k < side, and of the first multiples of side: their products are all."""
+        x = panels.x[part].ravel() / turns
         return [np.exp(1j * np.multiply.outer(step * np.arange(side), x)) for step in (1, side)]
 
     c, series = np.zeros((side, side), complex), np.empty_like(value)
     for part in blocks:
         fine, coarse = waves(part)
         c += ((weight * value)[part].ravel() * coarse.conj()) @ fine.conj().T
-    c.reshape(-1)[orders + 1 :] = 0.0
+    c.reshape(-1)[count:] = 0.0
     for part in blocks:
         fine, coarse = waves(part)
         series[part] = (2.0 * ((c @ fine) * coarse).sum(0).real - c[0, 0].real).reshape(-1, NODES)
     remainder = np.sqrt(np.sum(weight * (value - series) ** 2))
-    return c.reshape(-1)[: orders + 1], float(remainder)
+    return c.reshape(-1)[:count], float(remainder)

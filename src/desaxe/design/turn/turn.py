@@ -101,10 +101,9 @@ class Turn(Cycle):
         return np.asarray(super().edges(names, motion, **other)[0])
 
 
-def one_turn(caller: str, inputs: Mapping[str, Any], branch: int) -> Turn:
-    """A design that turns fully, under loads that repeat after a turn, at constant speed."""
+def turning(caller: str, inputs: Mapping[str, Any], branch: int) -> Turn:
+    """A design whose crank turns fully, at constant speed."""
     turn = Turn(caller, inputs, branch)
-    turns_of(caller, turn.loads, 1)
     if turn.margin < 0.0:
         raise cannot_turn(caller, turn)
     return turn
