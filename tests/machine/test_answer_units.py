@@ -138,11 +138,11 @@ def test_titles_and_attributes_have_the_loads_in_the_units_of_the_machine():
     press = press.replace(F_Y=press.over_theta(["0 deg", "30 deg", "180 deg"], [-3, 0, 0], kind="step"))
     found = press.grid("T_in", theta=[0.0, 1.0])
     assert found.attrs["loads"] == "F_Y: <load over theta: 3 points, step, -3 to 0 kN>"
-    assert "step, -3 to 0 kN" in title_of(found, ["T_in"]).replace("\u00a0", " ")
+    assert "F_Y over theta, -3 to 0 kN" in title_of(found, ["T_in"]).replace("\u00a0", " ")
     words = "over theta, -3 to 0 kN"
     assert words in repr(press)
     assert words in str(press.explain("T_in", theta=[0.0, 1.0]))
-    assert "step, -3 to 0 kN" in str(press.drive())
+    assert "F_Y over theta, -3 to 0 kN" in str(press.drive())
     assert "-3000 to 0" in dx.grid("T_in", theta=[0.0, 1.0], **press).attrs["loads"]
 
 

@@ -117,3 +117,6 @@ def test_labels_of_levels_do_not_crowd():
     assert len(places) > 3
     apart = np.linalg.norm(places[:, None] - places[None], axis=-1)
     assert apart[np.triu_indices(len(places), 1)].min() > 0.07
+    inside = places - [0.0, -0.5]
+    assert inside.min() > 0.05  # none is cut by the frame
+    assert inside.max() < 0.95

@@ -59,3 +59,26 @@ def test_an_axis_does_not_magnify_the_rounding_of_a_level_history():
     found = dx.simulate(torque=1.2, t_end=0.05, names=["T_in"], **DESIGN)
     low, high = found.plot().axes[3].get_ylim()
     assert (low, high) == pytest.approx((1.14, 1.26), rel=1e-9)
+
+
+def test_a_long_motion_is_drawn_at_instants_of_its_own():
+    """1,001 samples of 110 turns show waves that are none; a curve has 60 instants a turn."""
+    machine = dx.Machine(DESIGN, units="m, deg, rpm")
+    found = machine.simulate(torque=10.0, t_end=2.0, names=["V_C"])
+    picture = found.plot()
+    turns = found["theta"][-1] / 360.0
+    for name in ("theta", "omega", "alpha"):
+        t = picture[name][0].get_xdata()
+        assert t.size > 60 * turns
+    dense = dx.simulate(torque=10.0, t_end=2.0, times=t, **DESIGN)
+    theta, omega, alpha = (picture[name][0].get_ydata() for name in ("theta", "omega", "alpha"))
+    np.testing.assert_allclose(np.radians(theta), dense["theta"], rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(omega * np.pi / 30.0, dense["omega"], rtol=1e-8, atol=1e-8)
+    size = np.abs(dense["alpha"]).max()
+    np.testing.assert_allclose(np.radians(alpha) if found.units["alpha"] == "deg/s^2" else alpha,
+                               dense["alpha"], atol=1e-4 * size)  # fmt: skip
+    (line,) = picture["V_C"]
+    assert (line.get_linestyle(), line.get_marker()) == ("None", ".")
+    (marks,) = picture.axes[0].lines[1:]
+    assert marks.get_xdata().size == 0
+    assert marks.get_label() == f"dead centre: {len(found['events'])}, not marked"

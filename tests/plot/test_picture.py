@@ -73,7 +73,7 @@ def test_titles_tell_what_matters():
     forces = title(LOADED.plot("T_in"))
     for words in ("ec = 10 mm", "omega0 = 300 rpm", "m_slider = 4 kg"):
         assert words in forces
-    assert "F_Y over theta: 3 points, step, -3000 to 0 N" in forces
+    assert "F_Y over theta, -3000 to 0 N" in forces
     assert "F_Y" not in title(LOADED.plot("a_C"))
     assert "m_slider" not in title(LOADED.plot("a_C"))
     constant = dx.Machine(PRESS, F_Y="-2 kN", mu=0, branch=-1)
@@ -81,7 +81,7 @@ def test_titles_tell_what_matters():
     assert "branch = -1" in title(constant.plot("Y"))
     assert "mu" not in title(constant.plot("N_C"))
     for picture in (LOADED.plot(["Y", "T_in"]), LOADED.plot.polar("T_in"), LOADED.plot.drive()):
-        assert "3 points, step, -3000 to 0" in title(picture).replace("\n", " ")
+        assert "F_Y over theta, -3000 to 0 N" in title(picture).replace("\n", " ")
 
 
 def test_there_is_room_where_a_load_jumps_at_an_end():

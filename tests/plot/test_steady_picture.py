@@ -30,3 +30,20 @@ def test_a_torque_over_the_angle_has_no_curve_and_no_state_no_picture():
     assert "motor" not in found.plot()
     with pytest.raises(ValueError, match="no steady state to draw"):
         PRESS.steady(torque=30.0).plot()
+
+
+def test_speeds_in_si_are_drawn_in_rpm_and_angles_have_ticks_that_divide_a_turn():
+    machine = {"ec": 0.01, "AB": 0.05, "BC": 0.2, "m_slider": 20.0, "I_crank": 2.0, "F_Y": -900.0}
+    found = dx.steady(torque=dx.kloss(40.0, 0.15, 157.08, gear=12), **machine)
+    picture = found.plot()
+    np.testing.assert_allclose(picture["omega"].get_ydata(), found["omega"] * 30.0 / np.pi, rtol=1e-12)
+    np.testing.assert_allclose(picture["loop"].get_xdata(), found["omega"] * 30.0 / np.pi, rtol=1e-12)
+    speed, torque = picture["motor"].get_data()
+    at = np.interp(found["omega"] * 30.0 / np.pi, speed, torque)
+    np.testing.assert_allclose(at, found["T_motor"], rtol=0.02, atol=2.0)
+    first, second, last = picture.axes
+    assert first.get_ylabel() == "crank speed [rpm]" == last.get_xlabel()
+    assert "rpm" in first.get_title(loc="left")
+    for one in (first, second):
+        assert one.get_xlim() == (0.0, 360.0)
+        assert set(np.diff(one.get_xticks())) == {45.0}

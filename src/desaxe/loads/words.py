@@ -30,7 +30,7 @@ def brief(load: Any, conversion: Any) -> str:
         words: str = load.told()
         return words[1:-1].removeprefix("load ")
     ends = [conversion.shown(end) for table in load.tables for end in table.range]
-    return f"over {load.over}, " + with_unit(f"{min(ends):.4g} to {max(ends):.4g}", conversion.unit)
+    return f"over {load.over}, " + with_unit(f"{min(ends):g} to {max(ends):g}", conversion.unit)
 
 
 def without_points(words: str) -> str:

@@ -13,6 +13,7 @@ from .shared import (
     around_level,
     chosen,
     drawn,
+    finish,
     finish_axis,
     label_of,
     mark_gaps,
@@ -78,8 +79,5 @@ def draw(ax: "Axes", array: "xr.DataArray", over: str, beside: bool | None) -> "
     limits = worth_showing(values) or around_level(values)
     if limits is not None:
         ax.set_ylim(*limits)
-    ax.grid(True, color="0.9", linewidth=0.8)
-    ax.set_axisbelow(True)
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)
+    finish(ax)
     return lines

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 SIZE = (7.6, 5.2)  # inches
 LEVELS = 12
 GROWS = 1.0  # what lies further from most values than their range grows without bound
-LONG, APART = 0.2, 0.08  # shares of the axes: a line that is labelled, its label from others
+LONG, APART, CLEAR = 0.2, 0.08, 0.03  # shares of the axes: of a line with a label, from others, around it
 HATCH, SHADE, LINE = "////", "0.93", "0.25"
 FEASIBLE = (0, 2)  # status: ok, and at a change point
 GEOMETRIC = (0, 1, 2)  # what the lengths alone decide
@@ -121,22 +121,32 @@ def _widened(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _label(axes: Any, lines: Any, across: Any, up: Any) -> None:
-    """Label every second contour that is long enough, where there is space."""
+    """Label the contours that are long enough, each where it is furthest from others, if there is space."""
     with IMPORTS:
         from matplotlib.patheffects import withStroke
 
     size = np.array([np.ptp(across) or 1.0, np.ptp(up) or 1.0])
-    taken: list[NDArray[np.float64]] = []
-    for pieces in lines.allsegs[::2]:
-        far = [np.append(0.0, np.cumsum(np.linalg.norm(np.diff(p / size, axis=0), axis=1))) for p in pieces]
-        if not pieces or max(path[-1] for path in far) < LONG:
-            continue
-        best = max(range(len(pieces)), key=lambda k: far[k][-1])
-        middle = pieces[best][np.searchsorted(far[best], 0.5 * far[best][-1])]
-        if all(np.linalg.norm((middle - other) / size) > APART for other in taken):
-            taken.append(middle)
-    for text in axes.clabel(lines, manual=[tuple(place) for place in taken], fontsize=7) if taken else ():
+    scaled = [[(piece - (np.min(across), np.min(up))) / size for piece in level] for level in lines.allsegs]
+    whole = [np.concatenate([np.empty((0, 2)), *pieces]) for pieces in scaled]
+    taken = np.empty((0, 2))
+    for number, pieces in enumerate(scaled):
+        long = [p for p in pieces if np.linalg.norm(np.diff(p, axis=0), axis=1).sum() > LONG]
+        points = np.concatenate([np.empty((0, 2)), *long])
+        points = points[((points > APART) & (points < 1.0 - APART)).all(axis=1)]
+        lines_apart = _distances(points, np.concatenate([*whole[:number], *whole[number + 1 :], taken]))
+        gaps = np.where(_distances(points, taken) > 1.5 * APART, lines_apart, 0.0)
+        if gaps.max(initial=0.0) > CLEAR:
+            taken = np.append(taken, points[[gaps.argmax()]], axis=0)
+    places = taken * size + (np.min(across), np.min(up))
+    for text in axes.clabel(lines, manual=[tuple(p) for p in places], fontsize=8) if len(places) else ():
         text.set_path_effects([withStroke(linewidth=1.5, foreground="0.2")])
+
+
+def _distances(points: NDArray[np.float64], others: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The distance of each point from the nearest of others; 1 where there are none."""
+    far = np.linalg.norm(points[:, None] - others[None], axis=-1)
+    nearest: NDArray[np.float64] = far.min(axis=1, initial=1.0)
+    return nearest
 
 
 def _hatch(axes: Any, across: Any, up: Any, edge: NDArray[np.float64]) -> None:

@@ -4,11 +4,9 @@ import textwrap
 from math import degrees, isfinite
 from typing import TYPE_CHECKING, Any
 
-from ..loads.words import without_points
 from ..support.extras import needed
-from ..support.forks import IMPORTS
 from .picture import Picture
-from .shared import BLUE, ORANGE, raised
+from .shared import BLUE, ORANGE, finish, raised, rpm_for, turn_axis
 from .titles import WIDTH as TITLE
 
 if TYPE_CHECKING:
@@ -16,7 +14,6 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 SIZE = (8.0, 5.6)  # inches
-MINUTE = 9.549296585513721  # rpm in a rad/s
 
 
 def drive(result: Any, *, ax: "Axes | None" = None) -> Picture:
@@ -44,7 +41,10 @@ def drive(result: Any, *, ax: "Axes | None" = None) -> Picture:
     if turns and len(axes) > 1:
         lines["speed"] = _speed(axes[1], result)
     for one in axes:
-        _finish(one, _degrees(result, "theta"))
+        theta = _degrees(result, "theta")
+        turn_axis(one, theta.min(), theta.max())
+        one.margins(y=0.15)
+        finish(one)
     axes[-1].set_xlabel("crank angle, theta [deg]")
     return Picture(axes if len(axes) > 1 else axes[0], lines)
 
@@ -62,7 +62,7 @@ def _torque(ax: "Axes", result: Any) -> "dict[str, Line2D]":
     ax.annotate(told, (place, top), (-8 if left else 8, 5), textcoords="offset points", va="center",
                 ha="right" if left else "left", fontsize="small")  # fmt: skip
     ax.set_ylabel(f"torque of the drive, T_in [{result.unit('T_in')}]")
-    inputs = [raised(one)[1:-1] for one in without_points(result.design()).split(", ")]
+    inputs = [raised(one)[1:-1] for one in result.design()]
     design = ", ".join(one.replace(" ", "\u00a0") if len(one) < TITLE // 2 else one for one in inputs)
     ax.set_title(
         f"{textwrap.fill(design, TITLE)}\n"
@@ -74,10 +74,10 @@ def _torque(ax: "Axes", result: Any) -> "dict[str, Line2D]":
 
 
 def _speed(ax: "Axes", result: Any) -> "Line2D":
-    unit, values = result.unit("speed"), result.course["speed"]
-    if unit == "rad/s":
-        unit, values = "rpm", values * MINUTE
-    (curve,) = ax.plot(_degrees(result, "theta_of_speed"), values, color=BLUE, linewidth=1.6)
+    unit, factor = rpm_for(result.unit("speed"))
+    (curve,) = ax.plot(
+        _degrees(result, "theta_of_speed"), factor * result.course["speed"], color=BLUE, linewidth=1.6
+    )
     ax.set_ylabel(f"speed of the crank [{unit}]")
     inertia = f"{result['flywheel_inertia']:.4g} {raised(result.unit('flywheel_inertia'))[1:-1]}"
     ax.set_title(
@@ -95,16 +95,3 @@ def _scale(result: Any) -> float:
 
 def _degrees(result: Any, name: str) -> Any:
     return result.course[name] * _scale(result)
-
-
-def _finish(ax: "Axes", theta: Any) -> None:
-    with IMPORTS:
-        from matplotlib.ticker import MultipleLocator
-
-    ax.set_xlim(*(360.0 * round(end / 360.0) for end in (theta.min(), theta.max())))
-    ax.xaxis.set_major_locator(MultipleLocator(45.0))
-    ax.margins(y=0.15)
-    ax.grid(True, color="0.9", linewidth=0.8)
-    ax.set_axisbelow(True)
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)

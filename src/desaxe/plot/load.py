@@ -12,7 +12,7 @@ from ..mechanism.quantity_units import SI, UnitSystem
 from ..support.extras import needed
 from ..support.shown import printed
 from .picture import Picture
-from .shared import BLUE, ORANGE
+from .shared import BLUE, ORANGE, finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -61,10 +61,7 @@ def load(load: Load, *, ax: "Axes | None" = None, units: UnitSystem | None = Non
     ax.set_title(load.told(force)[1:-1], loc="left", fontsize="medium", wrap=True)
     if len(curves) > 1:
         ax.legend(frameon=False, fontsize="small")
-    ax.grid(True, color="0.9", linewidth=0.8)
-    ax.set_axisbelow(True)
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)
+    finish(ax)
     return Picture(ax, lines)
 
 

@@ -15,7 +15,7 @@ from ..support.extras import needed
 from ..support.forks import IMPORTS
 from ..units.system import Conversion
 from .picture import Picture
-from .shared import BLUE, ORANGE
+from .shared import BLUE, ORANGE, finish
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 HEIGHT = 6.0  # inches
 BLOCK = (0.16, 0.22)  # half width and height of the slider, in cranks
+ROOM = 0.2  # rad: of half an angle whose name has space beside the crank
 ANGLES = np.linspace(0.0, 2.0 * pi, 361)
 
 
@@ -59,16 +60,21 @@ class Sketch:
         self.slider.set_visible(isfinite(Y))
         left = -1.0 if sin(angle) >= 0.0 else 1.0  # where the crank does not point to
         edge = -ec + (BLOCK[0] * AB if pin[0] < -ec else -BLOCK[0] * AB), Y  # of the guide, away from the rod
-        anchors = (points[0], pin, edge)
+        half = 0.5 * (angle % (2.0 * pi))
+        middle = (0.35 * AB * sin(half), 0.35 * AB * cos(half))  # of the angle's arc
+        anchors = (points[0], pin, edge, 0.5 * (points[0] + points[1]), 0.5 * (points[1] + points[2]), middle)
         beside: Any = (
             (12.0 * left, 3.0),
             (-12.0 * left, 0.0),
             (9.0 if pin[0] < -ec else -9.0, 0.0),
+            *(_beside(*ends) for ends in (points[:2], points[1:])),
+            (20.0 * sin(half), 9.0 * cos(half)),
         )  # points
         for text, place, offset in zip(self.names, anchors, beside, strict=True):
             text.xy = tuple(place)
             text.set_position(tuple(offset))
             text.set_visible(isfinite(place[1]))
+        self.names[-1].set_visible(half > ROOM)
         part = np.linspace(0.0, angle % (2.0 * pi), 50)
         self.arc.set_data(0.35 * AB * np.sin(part), 0.35 * AB * np.cos(part))
         stuck = "" if isfinite(Y) else ", cannot be assembled"
@@ -102,6 +108,14 @@ def mechanism(*, theta: Any, ec: Any, AB: Any, BC: Any, branch: int = 1, ax: "Ax
     links, slider, pins, arc, names, note = _moving(ax, lengths["AB"])
     sketch = Sketch(ax, links, slider, pins, arc, names, note, lengths, int(branch))
     return Picture(ax, sketch.turn(theta), sketch)
+
+
+def _beside(first: Any, last: Any) -> tuple[float, float]:
+    """The offset of the name of a link from its middle, in points, to the side away from the axis."""
+    across, up = last - first
+    length = float(np.hypot(across, up)) or 1.0
+    side = 13.0 if up > 0.0 else -13.0
+    return (side * up / length, -side * across / length)
 
 
 def _number(name: str, value: Any) -> float:
@@ -139,8 +153,7 @@ def _frame(ax: "Axes", lengths: dict[str, float], reach: Any, box: tuple[float, 
         ax.annotate(f"ec = {ec:.4g} m", (max(0.0, -ec), at), (5, 0), textcoords="offset points", va="center")
     ax.set(xlim=box[:2], ylim=box[2:], xlabel="X [m]", ylabel="Y, along the slider's axis [m]")
     ax.set_aspect("equal")
-    for edge in ("top", "right"):
-        ax.spines[edge].set_visible(False)
+    finish(ax, grid="")
 
 
 def _moving(ax: "Axes", AB: float) -> tuple[Any, ...]:
@@ -156,10 +169,12 @@ def _moving(ax: "Axes", AB: float) -> tuple[Any, ...]:
     ax.add_patch(slider)
     (pins,) = ax.plot([], [], "o", color="w", markeredgecolor="0.1", markersize=7, zorder=4)
     (arc,) = ax.plot([], [], color="0.2", linewidth=1.0, zorder=5)
-    centred: dict[str, Any] = {"ha": "center", "va": "center", "fontweight": "bold"}
+    centred: dict[str, Any] = {"ha": "center", "va": "center"}
     names = tuple(
-        ax.annotate(name, (0, 0), (0, 0), textcoords="offset points", zorder=5, **centred) for name in "ABC"
-    )
+        ax.annotate(name, (0, 0), (0, 0), textcoords="offset points", zorder=5, **style)
+        for name, style in [*((n, {**centred, "fontweight": "bold"}) for n in "ABC"),
+                            *((n, centred) for n in ("AB", "BC", "theta"))]
+    )  # fmt: skip
     note = ax.set_title("", loc="left", fontsize="medium")
     return links, slider, pins, arc, names, note
 

@@ -9,7 +9,7 @@ from ..support.extras import needed
 from ..support.forks import IMPORTS
 from .jumps import with_jumps
 from .picture import Picture
-from .shared import chosen, drawn, input_in_si, label_of, worth_showing
+from .shared import chosen, drawn, finish, input_in_si, label_of, worth_showing
 from .titles import title_of
 
 if TYPE_CHECKING:
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 SIZE = (6.4, 6.0)  # inches
 TITLE = 56  # letters in a line
+BESIDE = 0.2  # rad: as far a number reaches
+FREE = 22.5 + 45.0 * np.arange(8)  # deg: between the angles that are named
 
 
 def polar(
@@ -86,6 +88,27 @@ def _finish(axes: Any, array: "xr.DataArray", lines: "list[Line2D]") -> None:
     axes.set_xlabel(f"{label_of(array)}\nover the {label_of(array['theta'])}", labelpad=12)
     for text in axes.yaxis.get_ticklabels():
         text.set_bbox({"facecolor": "w", "edgecolor": "none", "alpha": 0.75, "pad": 0.8})
-    axes.grid(True, color="0.9", linewidth=0.8)
-    axes.set_axisbelow(True)
-    axes.spines["polar"].set_visible(False)
+    axes.set_rlabel_position(_free_angle(axes, lines))
+    finish(axes, without=["polar"])
+
+
+def _free_angle(axes: Any, lines: "list[Line2D]") -> float:
+    """The angle [deg] at which the numbers of the radial axis lie furthest from all curves."""
+    low, high = axes.get_ylim()
+    ticks = [float(tick) for tick in axes.yaxis.get_majorticklocs() if low < tick < high]
+    free = [
+        sum(_clearance(lines, np.radians(angle), tick, 0.3 * (high - low)) for tick in ticks)
+        for angle in FREE
+    ]
+    return float(FREE[int(np.argmax(free))])
+
+
+def _clearance(lines: "list[Line2D]", angle: float, tick: float, most: float) -> float:
+    """The distance of a number on the radial axis from the curves beside it, at most `most`."""
+    for line in lines:
+        theta, values = (np.asarray(data, dtype=np.float64) for data in line.get_data())
+        beside = np.abs((theta - angle + np.pi) % (2.0 * np.pi) - np.pi) < BESIDE
+        near = values[beside & np.isfinite(values)]
+        if near.size:
+            most = min(most, max(near.min() - tick, tick - near.max(), 0.0))
+    return most

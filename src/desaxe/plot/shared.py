@@ -3,7 +3,7 @@
 import re
 import textwrap
 from collections.abc import Sequence
-from math import degrees
+from math import degrees, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,6 +24,7 @@ MOST_IN_LEGEND = 10  # curves; more get a colour bar
 BOUNDED = 3.0  # of the range of curves without gaps: others that stay within that are shown whole
 WIDE = 58  # letters of a label in one line
 ROOM, NEAR = 0.02, 0.01  # of an axis: beside a jump that is as near to its end
+MINUTE = 30.0 / pi  # rpm in a rad/s
 LEAST = 1e-6  # of the largest step between samples: a jump
 
 
@@ -173,6 +174,30 @@ def meaning_of(array: "xr.DataArray") -> str:
         return told  # "derivative of Y by theta, theta" says two things
     peak, colon, rest = told.partition(" over a turn: ")
     return f"{peak} of the {rest}" if colon else told.partition(",")[0].partition(":")[0]
+
+
+def finish(axes: Any, grid: str = "both", without: Sequence[str] = ("top", "right")) -> None:
+    """The style of every picture: a pale grid behind the curves, and a frame without some of its sides."""
+    if grid:
+        axes.grid(True, axis=grid, color="0.9", linewidth=0.8)
+        axes.set_axisbelow(True)
+    for side in without:
+        axes.spines[side].set_visible(False)
+
+
+def turn_axis(axes: Any, low: float, high: float) -> None:
+    """A horizontal axis of whole turns in degrees, with a tick at every eighth of a turn."""
+    with IMPORTS:
+        from matplotlib.ticker import MultipleLocator
+
+    ends = [360.0 * round(end / 360.0) for end in (low, high)]
+    axes.set_xlim(*ends)
+    axes.xaxis.set_major_locator(MultipleLocator(45.0 * max(1.0, round((ends[1] - ends[0]) / 360.0))))
+
+
+def rpm_for(unit: str) -> tuple[str, float]:
+    """The unit in which a speed is shown, and its factor: rpm for rad/s."""
+    return ("rpm", MINUTE) if unit == "rad/s" else (unit, 1.0)
 
 
 def finish_axis(axis: Any, input_: "xr.DataArray") -> None:

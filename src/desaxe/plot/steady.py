@@ -7,7 +7,7 @@ from ..mechanism.quantity_units import SI
 from ..support.extras import needed
 from ..support.shown import printed
 from .picture import Picture
-from .shared import BLUE, ORANGE
+from .shared import BLUE, ORANGE, finish, rpm_for, turn_axis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,41 +32,47 @@ def steady(result: Any, *, ax: "Axes | None" = None) -> Picture:
     if not isfinite(result["period"]):
         raise ValueError(f"this machine has no steady state to draw: {result['message']}")
     units = result.system or SI
-    names = {"omega": "speed of the crank", "T_motor": "torque of the motor"}
-    labels = {name: f"{words} [{printed(units.of(name).unit)}]" for name, words in names.items()}
+    unit, factor = rpm_for(units.of("omega").unit)
+    labels = {
+        "omega": f"crank speed [{unit}]",
+        "T_motor": f"motor torque [{printed(units.of('T_motor').unit)}]",
+    }
+    values = {"omega": factor * result["omega"], "T_motor": result["T_motor"]}
     lines: dict[str, Any] = {}
     if ax is None:
         axes = list(Figure(figsize=SIZE, layout="constrained").subplots(3))
         axes[0].sharex(axes[1])
         theta = [degrees(units.of("theta").to_si(angle)) for angle in result["theta"].tolist()]
-        for one, name in zip(axes, names, strict=False):
-            (lines[name],) = one.plot(theta, result[name], color=BLUE, linewidth=1.6)
+        for one, name in zip(axes, values, strict=False):
+            (lines[name],) = one.plot(theta, values[name], color=BLUE, linewidth=1.6)
             one.set(ylabel=labels[name], xlabel="crank angle, theta [deg]")
+            turn_axis(one, theta[0], theta[-1])
+        axes[0].set_xlabel("")
         axes[0].set_title(
-            f"mean speed {result['omega_mean']:.5g} {units.of('omega').unit}, fluctuation "
+            f"mean speed {factor * result['omega_mean']:.5g} {unit}, fluctuation "
             f"{100 * result['fluctuation']:.3g} %, {result['power_mean']:.4g} {units.of('power_mean').unit}",
             loc="left", fontsize="medium",
         )  # fmt: skip
     else:
         axes = [ax]
-    lines |= _loop(axes[-1], result, units, labels)
+    lines |= _loop(axes[-1], result, values, labels, factor)
     for one in axes:
-        one.grid(True, color="0.9", linewidth=0.8)
-        one.set_axisbelow(True)
-        for side in ("top", "right"):
-            one.spines[side].set_visible(False)
+        finish(one)
     return Picture(axes if len(axes) > 1 else axes[0], lines)
 
 
-def _loop(ax: "Axes", result: Any, units: Any, labels: dict[str, str]) -> dict[str, Any]:
+def _loop(
+    ax: "Axes", result: Any, values: dict[str, Any], labels: dict[str, str], factor: float
+) -> dict[str, Any]:
     """The motor's curve, and what of it the machine works on."""
     lines = {}
     curve = result.motor_curve()
     if curve is not None:
-        speed, torque = units.of("omega").shown(curve[0]), units.of("T_motor").shown(curve[1])
+        units = result.system or SI
+        speed, torque = factor * units.of("omega").shown(curve[0]), units.of("T_motor").shown(curve[1])
         (lines["motor"],) = ax.plot(speed, torque, color="0.6", linewidth=1.2, label="motor")
     (lines["loop"],) = ax.plot(
-        result["omega"], result["T_motor"], color=ORANGE, linewidth=2.4, label="over a period"
+        values["omega"], values["T_motor"], color=ORANGE, linewidth=2.4, label="over a period"
     )
     ax.set(xlabel=labels["omega"], ylabel=labels["T_motor"])
     ax.legend(frameon=False, fontsize="small")

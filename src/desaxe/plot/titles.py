@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 WIDTH = 80  # letters in a line
 ACTING = ("alpha", *(name for name in LOADS if name not in CENTRES))  # nothing where they are 0
+_TABLE = re.compile(r"over (.*): [0-9]+ points, \w+, (.*)")
+_NUMBER = re.compile(r"(?<![\w.^])[-+]?[0-9][0-9.]*(?:e[-+]?[0-9]+)?(?![\w.^])")
 _VARYING = re.compile(r"(\w+): <load (.*?)>(?=; \w+: <|$)")
 
 
@@ -41,13 +43,18 @@ def _numbers(dataset: "xr.Dataset", needs: Collection[str]) -> Iterator[str]:
 
 
 def _loads(dataset: "xr.Dataset", needs: Collection[str]) -> Iterator[str]:
-    """The loads that vary with the motion; what a table says of one without a unit is in newtons."""
+    """The loads that vary with the motion, each with what it is over and its range, both ways together."""
     for name, words in _VARYING.findall(str(dataset.attrs.get("loads", ""))):
-        if name in needs:
-            ways = without_points(words).split(", inward ")
-            plain = re.search(r" to \S*[0-9]$", ways[-1]) is not None
-            unit = f" {INPUTS[name].unit}" if plain else ""
-            yield f"{name} " + ", inward ".join(f"{way}{unit}" for way in ways)
+        if name not in needs:
+            continue
+        table = _TABLE.fullmatch(without_points(words))
+        if table is None:
+            yield f"{name} {words}"
+            continue
+        over, ranges = table.groups()
+        ends = [float(number) for number in _NUMBER.findall(ranges)]
+        unit = _NUMBER.sub("", ranges.rpartition(" to ")[2]).strip() or INPUTS[name].unit
+        yield f"{name} over {over}, {min(ends):g} to {max(ends):g} {unit}"
 
 
 def _needs(names: Sequence[str], state: bool) -> Collection[str]:

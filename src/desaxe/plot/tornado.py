@@ -12,7 +12,7 @@ from ..mechanism.read import number_of, read
 from ..support.extras import needed
 from ..support.shown import shown
 from .picture import Picture
-from .shared import BLUE, ORANGE, label_of, raised
+from .shared import BLUE, ORANGE, finish, label_of, raised
 from .titles import title_of
 
 if TYPE_CHECKING:
@@ -66,11 +66,8 @@ def tornado(
     ax.axvline(value, color="0.2", linewidth=1.0)
     ax.set_xlabel(label)
     ax.locator_params(axis="x", nbins=6)
-    ax.grid(True, axis="x", color="0.9", linewidth=0.8)
-    ax.set_axisbelow(True)
+    finish(ax, "x", ("top", "right", "left"))
     ax.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    for side in ("top", "right", "left"):
-        ax.spines[side].set_visible(False)
     ax.set_title(
         _title(result, name, value, system) if title is None else title, loc="left", fontsize="medium"
     )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...loads.angles import turns_of
 from ...loads.load import Load
+from ...loads.words import brief
 from ...mechanism.quantity_units import SI, UnitSystem, units_by_name
 from ...mechanism.status import DriveStatus
 from ...support.answer import Answer
@@ -52,7 +53,7 @@ class Drive(Answer):
             return repr(self)
         lines = [
             f"Drive over {'one turn' if self.turns == 1 else f'{self.turns} turns'}",
-            f"  {self.design()}",
+            f"  {', '.join(self.design())}",
         ]
         if self["status"]:
             lines.append(f"  status {self['status']}: {DriveStatus(self['status']).words}")
@@ -74,16 +75,16 @@ class Drive(Answer):
         """After how many turns the loads repeat."""
         return turns_of("drive", {n: load for n, load in self.inputs.items() if callable(load)}, MOST_TURNS)
 
-    def design(self) -> str:
-        """The inputs with their units, in a line."""
+    def design(self) -> list[str]:
+        """The inputs with their units, loads in a few words."""
         told = []
         for name, value in self.inputs.items():
             conversion = self._system.of(name)
             if isinstance(value, Load):
-                told.append(f"{name}: {value.told(conversion)}".replace("<", "").replace(">", ""))
+                told.append(f"{name} {brief(value, conversion)}")
                 continue
             told.append(with_unit(f"{name} = {conversion.shown(value):.6g}", conversion.unit))
-        return ", ".join(told)
+        return told
 
     def unit(self, name: str) -> str:
         """The unit of a figure or of an array of `course`, as a label has it."""
