@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from desaxe.evaluation.evaluate import evaluate
-from desaxe.runtime.accuracy import ACCURACIES
+from desaxe.runtime.request import ACCURACIES
 
 NAMES = ("V_C", "a_C", "a_C_wrt_ec")
 INPUTS = ("theta", "ec", "AB", "BC", "omega0", "alpha")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.evaluation import loops as _axes
-from desaxe.evaluation.loops import INNERMOST, loops_over
+from desaxe.evaluation import arrays as _axes
+from desaxe.evaluation.arrays import INNERMOST, loops_over
 
 NAMES = ["V_C", "a_C", "a_C_wrt_ec", "status"]
 

@@ -13,7 +13,7 @@ from tests.repository.test_wheel import BUILD, copy_of_the_tree
 ROOT = Path(__file__).resolve().parents[2]
 # Every place that runs a text as code; what it runs was written by our compiler from its own Program.
 RUNS_TEXT = {
-    "src/desaxe/runtime/wide_margins.py",
+    "src/desaxe/runtime/kernels.py",
     "src/desaxe/runtime/native/compiled_text.py",
     "src/desaxe/runtime/native_calls.py",
     "src/desaxe/compiler/languages/arrays.py",

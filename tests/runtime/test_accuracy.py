@@ -11,7 +11,7 @@ import desaxe as dx
 from desaxe.oracle import force_truth
 from desaxe.oracle.families import FAMILIES, Rng, points
 from desaxe.oracle.truth import LAW, all_names, truth_all, ulp_error
-from desaxe.runtime.accuracy import ACCURACIES, accuracy_of
+from desaxe.runtime.request import ACCURACIES, accuracy_of
 from tests.effort import cases
 from tests.evaluation.test_stress import bodies
 

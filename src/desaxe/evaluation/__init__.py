@@ -1,8 +1,7 @@
 """Values of quantities: at a point, over arrays, over a grid.
 
 evaluate       numbers in, a float out; arrays in, arrays out
-arrays         inputs that broadcast, outputs and scratch
-loops          the loop that each input of a broadcast varies along
+arrays         inputs that broadcast, the loops they vary along, outputs and scratch
 grid           an outer product as a labelled dataset
 axes           its arguments, checked
 chunks         how a grid, or a reduced axis, is cut
@@ -14,7 +13,6 @@ quality        condition numbers and error bounds
 values         values of names from a dict of inputs: the body of `evaluate`
 function       a prepared callable of some inputs
 call_cache     repeated calls of one shape: a cache of checked calls
-repair         points that a kernel leaves undecided, recomputed
 labelled       `evaluate` of labelled arrays
 dask_blocks    a function of many outputs over the chunks of Dask arrays
 in_units       labelled results in other units

@@ -1,6 +1,7 @@
 """The arguments of a grid, checked."""
 
 from collections.abc import Container, Iterable, Mapping, Sequence
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -11,10 +12,11 @@ from ..mechanism.catalogue import of_design
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LENGTHS, STATUS
-from ..mechanism.program import program_of
+from ..mechanism.own import Register, register, used_by
+from ..mechanism.program import Variant, program_of
 from ..runtime.request import Request, check_common, several, standstill
+from ..support.forks import IMPORTS
 from .arrays import as_array
-from .under_loads.loaded import split_axes
 
 Array = NDArray[Any]
 ALWAYS = ("status", "margin")
@@ -49,8 +51,8 @@ class Outer(NamedTuple):
 
         Strokes hang on the sign of the speed: where that changes, they have the speed's dimension too.
         """
-        whole = [name for name in self.shown if of_design(name)]
-        both = [name for name in whole if "omega0" in program_of((name,)).inputs] if self._reverses else []
+        whole, signed = _of_designs(self.shown, register())
+        both = [*signed] if self._reverses else []
         rest = [name for name in whole if name not in both]
         others = [name for name in self.shown if name not in whole]
         if others == [STATUS] and "theta" not in self.axes:  # that of the design
@@ -74,13 +76,26 @@ class Outer(NamedTuple):
         return [name for name in self.dimensions if name in LENGTHS]
 
 
+@lru_cache(maxsize=256)
+def _of_designs(names: tuple[str, ...], known: Register) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The names that follow from the lengths alone; of these, those that need the sign of the speed."""
+    whole = tuple(name for name in names if of_design(name, known))
+    programs = {name: program_of((name,), Variant(own=used_by((name,), known))) for name in whole}
+    return whole, tuple(name for name, program in programs.items() if "omega0" in program.inputs)
+
+
 def outer_of(
     names: str | Sequence[str], inputs: Mapping[str, Any], branch: int, threads: int | None, always: bool
 ) -> Outer:
     """Check the arguments of a grid; `always`: it has `status` and `margin` too."""
     wanted = (names,) if isinstance(names, str) else several(names)
     check_inputs("grid", inputs, ARGUMENTS)
-    inputs, loads = split_axes(inputs)
+    loads: Mapping[str, Load] = {}
+    if any(callable(value) or hasattr(value, "dims") for value in inputs.values()):
+        with IMPORTS:
+            from .under_loads.loaded import split_axes
+
+        inputs, loads = split_axes(inputs)
     given = _given(wanted, inputs, loads)
     check_common(given, branch, threads)
     shown = tuple(dict.fromkeys((*wanted, *ALWAYS))) if always else wanted

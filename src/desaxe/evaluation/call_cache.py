@@ -17,11 +17,10 @@ from ..mechanism.inputs import SAFE, is_good
 from ..mechanism.load_lines import NEAR_JUMP
 from ..mechanism.names import LENGTHS
 from ..runtime.executor import CompiledKernel, is_ready, kernel_for, words
-from ..runtime.kernels import key_of
+from ..runtime.kernels import key_of, of_numbers
 from ..runtime.request import Request
 from ..runtime.specialise import plain_form
 from ..runtime.threads import LONGEST_BLOCK, least_of, run_parts
-from ..runtime.wide_margins import of_numbers
 from ..support.memory import require
 from ..support.recent import Recent
 

@@ -18,16 +18,14 @@ from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LENGTHS, sensitivity
 from ..mechanism.own import Definition, Register, register, register_with, used_by
 from ..mechanism.read import in_si
-from ..runtime.kernels import STRUCTURAL_ZEROS, KernelKey
-from ..runtime.native_calls import Bound, bind, point_caller, scalar_of, ufunc_of
+from ..runtime.kernels import STRUCTURAL_ZEROS, KernelKey, all_have_wide_margins
+from ..runtime.native_calls import Bound, bind, point_caller, repair_for, scalar_of, ufunc_of
 from ..runtime.request import Request, as_number, check_common, request, several, standstill
 from ..runtime.specialise import plain_form
-from ..runtime.wide_margins import all_have_wide_margins
 from ..support.computed import computed_once
 from ..support.forks import IMPORTS
 from ..support.interrupts import import_whole
 from ..support.shown import shown as as_shown
-from .repair import repair_for
 
 Array = NDArray[Any]
 INPUTS_OF_FUNCTION = ("inputs", *INPUTS, "branch", "accuracy")

@@ -97,18 +97,12 @@ def provenance(
 
 
 @cache
-def import_xarray(what: str = "a labelled result") -> None:
-    """Import xarray, and all that it imports itself when it makes its first Dataset."""
+def import_xarray(what: str = "a labelled result") -> Any:
+    """The module xarray, with all that it imports itself when it makes its first Dataset."""
     with explained(what):
-        import_whole("xarray")
-    finished(_make_a_dataset)
-
-
-def _make_a_dataset() -> None:
-    with IMPORTS:
-        import xarray
-
-        xarray.Dataset({"x": ("x", np.zeros(1))})
+        xarray = import_whole("xarray")
+    finished(lambda: xarray.Dataset({"x": ("x", np.zeros(1))}))
+    return xarray
 
 
 def labelled(
@@ -118,10 +112,7 @@ def labelled(
     accuracy: str | float = "standard",
 ) -> "xr.Dataset":
     """A Dataset of variables by name (dimensions, array, attributes); a 1-d input is a dimension."""
-    import_xarray()
-    with IMPORTS:
-        import xarray
-
+    xarray = import_xarray()
     variables = dict(values)
     for name, (_, _, told) in variables.items():
         if "status" in variables and name not in ("status", "margin"):
@@ -132,9 +123,9 @@ def labelled(
     names = [name for name in values if name not in ("status", "margin")]
     about = provenance(names, inputs, branch, accuracy)
     ranks = [len(dims) for dims, _, _ in values.values()]
-    if ranks and ranks[0] < max(ranks):  # the axes in their own order
-        return xarray.Dataset(None, coordinates, about).assign(variables)
-    return xarray.Dataset(variables, coordinates, about)
+    axes_in_order = not ranks or ranks[0] == max(ranks)  # else those of the coordinates come first
+    dataset: xr.Dataset = xarray.Dataset(variables if axes_in_order else None, coordinates, about)
+    return dataset if axes_in_order else dataset.assign(variables)
 
 
 def with_loads(dataset: "xr.Dataset", loads: Mapping[str, Any]) -> "xr.Dataset":

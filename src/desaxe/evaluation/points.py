@@ -14,10 +14,9 @@ from numpy.typing import NDArray
 from ..mechanism.own import Definition, using
 from ..runtime.kernels import KernelKey, key_of
 from ..runtime.request import Request, request
-from .arrays import copied_back, dtype_of, fill, outputs_for, scratch_for
+from .arrays import Loops, copied_back, dtype_of, fill, outputs_for, scratch_for
 from .axes import Outer, require_inputs
 from .labels import Output, attributes
-from .loops import Loops
 from .under_loads.columns import MOTION, plan_at, require_angle, totals_at
 from .under_loads.request import UnderLoads, made_by, under_loads
 

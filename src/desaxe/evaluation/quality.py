@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from ..mechanism.catalogue import quantity
 from ..mechanism.names import LENGTHS, parts, sensitivity
-from ..runtime.accuracy import BOUNDS, accuracy_of
-from ..runtime.request import check_common, request, several
+from ..runtime.request import BOUNDS, accuracy_of, check_common, request, several
 from .arrays import as_array, broadcast_shape, refuse_other_labels
 from .values import of_any_arrays, values
 

@@ -9,9 +9,17 @@ from typing import Any
 
 from ..mechanism.inputs import SAFE, is_good
 from ..mechanism.own import register
-from ..runtime.accuracy import accuracy_of
 from ..runtime.point import PointFunction, point_of
-from ..runtime.request import Request, as_number, check_common, is_steady, request, several, standstill
+from ..runtime.request import (
+    Request,
+    accuracy_of,
+    as_number,
+    check_common,
+    is_steady,
+    request,
+    several,
+    standstill,
+)
 from ..support.forks import IMPORTS
 from ..support.interrupts import import_whole
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import wraps
+from math import inf
 from typing import ParamSpec, TypeVar
 
 from ..support.forks import IMPORTS
@@ -21,8 +22,10 @@ def warning(function: Callable[P, T]) -> Callable[P, T]:
         for name, value in inputs.items():
             if type(value) is float or type(value) is int:
                 harmless = name not in HARMLESS or -HARMLESS[name] <= value <= HARMLESS[name]
+            elif name in FORCES:
+                harmless = getattr(value, "largest", inf) <= HARMLESS.get(name, 0.0)
             else:
-                harmless = name not in FORCES and not isinstance(value, (str, tuple))
+                harmless = not isinstance(value, (str, tuple))
             if not harmless:
                 with IMPORTS:
                     from .slips import warn_once

@@ -17,11 +17,9 @@ from ..mechanism.constants import constants
 from ..mechanism.names import LENGTHS, STATUS, sensitivity
 from ..mechanism.own import Register, register, using
 from ..mechanism.own_lines import has_kinks
-from ..runtime.accuracy import accuracy_of
-from ..runtime.kernels import STRUCTURAL_ZEROS
-from ..runtime.request import Request, is_steady, request
+from ..runtime.kernels import STRUCTURAL_ZEROS, all_have_wide_margins, have_wide_margins
+from ..runtime.request import Request, accuracy_of, is_steady, request
 from ..runtime.threads import run_parts
-from ..runtime.wide_margins import all_have_wide_margins, have_wide_margins
 from ..support.progress import Portions, progress_bar
 from .course import course_of
 from .differences import with_slopes

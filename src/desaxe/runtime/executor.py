@@ -6,11 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from ctypes import CFUNCTYPE, c_char_p, c_int64
 from typing import Any
 
+import numpy as np
+
 from ..compiler.kernel import Kernel
 from ..compiler.llvm.machine import Code, compiled, lanes
 from ..compiler.llvm.nest import HEAD, NAME, Entry, module_text
 from ..mechanism.constants import limit_of
-from ..support.forks import IMPORTS, ForkSafeLock
+from ..support.forks import ForkSafeLock
 from ..support.interrupts import finished
 from ..support.recent import Recent
 from .kernels import KernelKey, kernel_of
@@ -57,9 +59,6 @@ class CompiledKernel:
         steps = [array.strides[-1] for array in arrays]
         lengths = [*outs[0].shape]
         if self._tables:
-            with IMPORTS:
-                import numpy as np
-
             arrays += [np.empty([lengths[axis] for axis in along]) for along in self._tables]
         for table in self.given:
             arrays += [values[f"{table}_x"], values[f"{table}_c"]]

@@ -1,21 +1,25 @@
 """From a request to the loop nest that answers it: keys and their kernels."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
+from itertools import product
 from math import inf, prod
 from typing import Any, NamedTuple
 
+from ..compiler.builder import function_text
 from ..compiler.kernel import Kernel
+from ..compiler.languages.python import compile_python
 from ..compiler.lowering import Limits, guarded_for_loops, guarded_pairs, nest, nest_of_two_forms
 from ..compiler.passes.trigonometry import Trigonometry
 from ..compiler.program import Line, Program
+from ..compiler.text import write_lines
 from ..mechanism.constants import constants, double_constants
 from ..mechanism.inputs import LEAST, SAFE
 from ..mechanism.load_lines import EDGES, NEAR_JUMP
 from ..mechanism.names import LENGTHS, LOADS
 from ..mechanism.program import Variant
 from ..support.forks import IMPORTS
-from .accuracy import check_angle
-from .request import Request
+from .request import Request, check_angle
 from .specialise import plain_form, specialise
 
 # A scalar of 0 for one of these makes whole terms vanish, so it is folded into the kernel.
@@ -53,9 +57,6 @@ def key_of(
     axis = tuple(sorted(axis_of.items()))
     form = wanted.form
     if wanted.accuracy != "extended" and _pays_to_ask(columns, axis_of):
-        with IMPORTS:
-            from .wide_margins import all_have_wide_margins
-
         lengths = (columns.get(name, scalars.get(name)) for name in LENGTHS)
         if plain_form(wanted.names, form, fixed) is not None and all_have_wide_margins(form, *lengths):
             form = form._replace(wide_margins=True)
@@ -251,3 +252,55 @@ def seen_inputs(program: Program, varying: Sequence[str]) -> list[str]:
 def _trigonometry(key: KernelKey) -> Trigonometry | None:
     """The coefficients of a kernel's sine and cosine; None if angles exceed their range."""
     return None if key.far else constants()
+
+
+# ---- wide margins: designs so far from every change point that plain forms do not cancel ---------------
+
+
+def have_wide_margins(lengths: Mapping[str, Any], form: Variant) -> Any:
+    """Mask of the designs with wide margins, from broadcastable arrays `ec`, `AB`, `BC`."""
+    with IMPORTS:
+        import numpy as np
+
+    with np.errstate(all="ignore"):
+        return np.asarray(_of_arrays(form)(*(lengths[name] for name in LENGTHS)))
+
+
+def all_have_wide_margins(form: Variant, ec: Any, AB: Any, BC: Any) -> bool:
+    """True if every combination of these lengths (numbers or arrays) has wide margins.
+
+    The test says no more of all of them than of their extremes.
+    """
+    test = of_numbers(form)
+    return all(test(*corner)[0] for corner in product(_extremes(ec), _extremes(AB), _extremes(BC)))
+
+
+def _extremes(values: Any) -> tuple[float, ...]:
+    """The smallest and the largest element; NaN if one is NaN."""
+    return (values,) if isinstance(values, float) else (float(values.min()), float(values.max()))
+
+
+def _test(form: Variant) -> Program:
+    return specialise(("wide_margins",), form._replace(wide_margins=False, under=None), ())._replace(
+        inputs=LENGTHS
+    )
+
+
+@lru_cache(maxsize=1024)
+def of_numbers(form: Variant) -> Callable[..., Any]:
+    """The test as a function of three numbers."""
+    return compile_python(_test(form))
+
+
+@lru_cache(maxsize=1024)
+def _of_arrays(form: Variant) -> Callable[..., Any]:
+    """The test as a function of arrays: numba's spelling is NumPy's, too."""
+    with IMPORTS:
+        import numpy as np
+
+    lines = [*write_lines(_test(form), "numba"), "return wide_margins"]
+    source = function_text("test", LENGTHS, lines)
+    scope: dict[str, Any] = {"fabs": np.fabs, "inf": np.inf}
+    exec(compile(source, "<desaxe wide margins>", "exec"), scope)
+    test: Callable[..., Any] = scope["test"]
+    return test

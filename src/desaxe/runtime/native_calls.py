@@ -7,12 +7,18 @@ from contextlib import suppress
 from functools import cache
 from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..compiler.llvm.machine import compiled
-from ..support.forks import IMPORTS, imported
+from ..mechanism.names import STATUSES
+from ..support.forks import imported
 from ..support.interrupts import finished
 from .executor import CompiledKernel, compiled_kernel
 from .kernels import KernelKey
+from .left_over import settle
 
+Array = NDArray[Any]
 DOUBLE, BYTE = 12, 1  # NumPy's numbers of these types
 NO_IDENTITY = -1
 
@@ -86,9 +92,6 @@ def ufunc_of(bound: Bound, inputs: int, whole: Sequence[bool], name: str) -> tup
 
 def _wide(bound: Bound, whole: Sequence[bool]) -> Callable[..., Any]:
     """A Python function with the ufunc's behaviour, for more arguments than a ufunc can have."""
-    with IMPORTS:
-        import numpy as np
-
     loop = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 4)(bound.loop)
     kinds = [np.int8 if kind else np.float64 for kind in whole]
 
@@ -188,3 +191,54 @@ def scalar_of(address: int, inputs: Sequence[str], outputs: int, one: bool, owne
     found = numba.njit(error_model="numpy")(scope["scalar"])
     found.owner = owner
     return found
+
+
+# ---- repair: points that the kernel of a function leaves over ------------------------------------------
+
+
+Repair = ctypes.CFUNCTYPE(None, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64)
+
+
+def repair_for(
+    key: KernelKey, numbers: Mapping[str, float], inputs: Sequence[str], failures: list[BaseException]
+) -> Any:
+    """The function that a kernel calls with its arguments if it leaves points over.
+
+    What it raises is appended to `failures`: it cannot pass through the machine code that called.
+    """
+
+    def repair(args: int, lengths: int, steps: int) -> None:
+        try:
+            size = ctypes.c_int64.from_address(lengths).value
+            columns, outs = _arrays(args, size, steps, key, inputs)
+            settle(key, {**numbers, **columns}, outs)
+        except BaseException as error:
+            failures.append(error)
+
+    return Repair(repair)
+
+
+def _arrays(
+    args: int, size: int, steps: int, key: KernelKey, inputs: Sequence[str]
+) -> tuple[dict[str, Array], list[Array]]:
+    """The arguments of the loop as arrays: the inputs of the kernel, and the outputs."""
+    count = len(inputs) + len(key.names)
+    addresses, strides = ((ctypes.c_int64 * count).from_address(place) for place in (args, steps))
+    kinds = ["<f8"] * len(inputs) + ["|i1" if name in STATUSES else "<f8" for name in key.names]
+    every = [_View(a, size, s, kind).array() for a, s, kind in zip(addresses, strides, kinds, strict=True)]
+    own = dict(key.axis_of)
+    columns = {name: array for name, array in zip(inputs, every, strict=False) if name in own}
+    return columns, every[len(inputs) :]
+
+
+class _View:
+    """Memory at an address, with NumPy's array interface."""
+
+    def __init__(self, address: int, size: int, stride: int, kind: str) -> None:
+        self.__array_interface__ = {
+            "version": 3, "data": (address, False), "shape": (size,), "strides": (stride,), "typestr": kind,
+        }  # fmt: skip
+
+    def array(self) -> Array:
+        """The array."""
+        return np.asarray(self)

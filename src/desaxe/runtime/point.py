@@ -10,7 +10,7 @@ from ..mechanism.constants import double_constants
 from ..mechanism.own_lines import not_extended
 from ..mechanism.program import Variant
 from ..support.forks import IMPORTS
-from .accuracy import check_angle
+from .request import check_angle
 from .specialise import plain_form, specialise
 
 Function = Callable[..., tuple[Any, ...]]

@@ -1,12 +1,14 @@
-"""The check of a request: names and inputs, once, with errors that name the wrong one."""
+"""The check of a request: names, inputs, accuracy, once, with errors that name the wrong one."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache, wraps
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from ..mechanism.catalogue import law_name, of_design, quantity
+from ..mechanism.constants import double_constants
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import unknown_input
+from ..mechanism.messages import amount, named
 from ..mechanism.names import CENTRES, FORCE_STATUS, LENGTHS, LOADS, STATUS, STATUSES, TURN_STATUS, parts
 from ..mechanism.own import Definition, Register, register, used_by
 from ..mechanism.own_lines import not_extended
@@ -14,13 +16,15 @@ from ..mechanism.program import Variant, program_of
 from ..mechanism.read import is_numpy_number, number_of
 from ..support.forks import IMPORTS
 from ..support.shown import shown
-from .accuracy import accuracy_of
 from .specialise import specialise
 
 P = ParamSpec("P")
 T = TypeVar("T")
 
 
+ACCURACIES = ("standard", "extended")
+# Accuracy -> the error that it keeps everywhere; the cheaper one first.
+BOUNDS = {"standard": 8 * 2.0**-52, "extended": 2 * 2.0**-52}
 OF_NO_EFFECT = (*LOADS, *LENGTHS, "branch")
 
 
@@ -42,7 +46,12 @@ class Request(NamedTuple):
     @property
     def inputs(self) -> tuple[str, ...]:
         """The inputs that it needs."""
-        return specialise(self.names, self.form, self.fixed).inputs
+        return _inputs(self.names, self.form, self.fixed)
+
+
+@lru_cache(maxsize=1024)
+def _inputs(names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...]) -> tuple[str, ...]:
+    return specialise(names, form, fixed).inputs
 
 
 def check_common(given: Mapping[str, Any], branch: Any, threads: int | None = None) -> None:
@@ -70,35 +79,49 @@ def request(
     if not names:
         raise ValueError(f"names = {names!r}: name at least one quantity, such as 'a_C'")
     check_common(given, branch)
-    known = known or register()
-    state = given.get("omega") is not None
-    kept = accuracy_of(accuracy)
+    names = tuple(names)
     for name in names:
+        if not isinstance(name, str):
+            raise TypeError(f"the name of a quantity is a str, got {shown(name)}")
+    present = frozenset(name for name, value in given.items() if value is not None)
+    sort = float(branch), accuracy_of(accuracy), known or register()
+    return _request(names, present, is_steady(given.get("alpha")), *sort)
+
+
+@lru_cache(maxsize=1024)
+def _request(
+    shown: tuple[str, ...],
+    present: frozenset[str],
+    steady: bool,
+    branch: float,
+    accuracy: str,
+    known: Register,
+) -> Request:
+    """The request of names where these inputs are present; `steady`: alpha is a plain 0, if it is."""
+    state = "omega" in present
+    for name in shown:
         quantity(name, state, known)
-    shown = tuple(names)
     own = tuple(law_name(name) if state else name for name in shown)
     others = [name for name in own if name != STATUS]
-    if others != list(own) and given.get("theta") is None and all(of_design(n, known) for n in others):
+    if others != list(own) and "theta" not in present and all(of_design(n, known) for n in others):
         own = tuple(TURN_STATUS if name == STATUS else name for name in own)
     defined = used_by(own, known)
     law = Variant(own=defined)
     inputs = program_of(own, law).inputs
-    if STATUS in own and ("mu" in inputs or given.get("mu") is not None):
+    if STATUS in own and ("mu" in inputs or "mu" in present):
         own = tuple(FORCE_STATUS if name == STATUS else name for name in own)
         inputs = program_of(own, law).inputs
-    absent = [name for name in inputs if name in LOADS and given.get(name) is None]
+    absent = [name for name in inputs if name in LOADS and name not in present]
     zeros = [(name, 0.0) for name in absent if name not in CENTRES]
-    if "alpha" in inputs and is_steady(given.get("alpha")):
+    if "alpha" in inputs and steady:
         zeros.append(("alpha", 0.0))
-    if "omega0" in inputs and not state and given.get("omega0") is None and needs_no_speed(own, known):
+    if "omega0" in inputs and not state and "omega0" not in present and needs_no_speed(own, known):
         zeros.append(("omega0", 0.0))
-    default_centres = tuple(
-        name for name in CENTRES if given.get(name) is None and _moves(name, own, defined)
-    )
-    if kept == "extended":
+    default_centres = tuple(name for name in CENTRES if name not in present and _moves(name, own, defined))
+    if accuracy == "extended":
         check_extended(defined)
     variant = Variant(state, default_centres, own=defined)
-    return Request(shown, own, variant, (("branch", float(branch)), *zeros), kept)
+    return Request(shown, own, variant, (("branch", branch), *zeros), accuracy)
 
 
 def needs_no_speed(names: Iterable[str], known: Register | None = None) -> bool:
@@ -196,3 +219,23 @@ def as_number(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]
     if value is None:
         raise TypeError(f"{', '.join(names)}: {name} is missing (needed: {', '.join(inputs)})")
     return number_of(INPUTS[name], value)
+
+
+def accuracy_of(asked: Any) -> str:
+    """The accuracy of this name, or the cheapest one that keeps a given error everywhere."""
+    if isinstance(asked, str) and asked in ACCURACIES:
+        return asked
+    if not isinstance(asked, (int, float)) or isinstance(asked, bool):
+        known = ", ".join(ACCURACIES)
+        raise ValueError(f"accuracy = {shown(asked)}: it is one of {known}, or an error such as 1e-9")
+    kept = next((name for name, bound in BOUNDS.items() if bound <= asked), "")
+    if not kept:
+        raise ValueError(f"accuracy = {shown(asked)}: the smallest error is {BOUNDS['extended']:.2g}")
+    return kept
+
+
+def check_angle(accuracy: str, theta: float) -> None:
+    """Refuse an angle that the accuracy cannot reduce exactly."""
+    if accuracy == "extended" and abs(theta) > double_constants().limit:
+        reach = amount("theta", double_constants().limit, ".0f", says_unit=True)
+        raise ValueError(named("theta", theta) + ": accuracy='extended' reaches |theta| <= " + reach)

@@ -12,8 +12,7 @@ from ..evaluation.axes import Outer, outer_of
 from ..evaluation.plan import Block, Plan, margin_of, plan_of
 from ..evaluation.reductions.argument import Reductions, names_reduced, reductions_of
 from ..mechanism.program import digest
-from ..runtime.accuracy import accuracy_of
-from ..runtime.request import several
+from ..runtime.request import accuracy_of, several
 from ..support.version import version as desaxe_version
 from .layout import Layout, layout_of
 from .peak_step import PeakRequest, PeakStep, peak_requests, peak_steps

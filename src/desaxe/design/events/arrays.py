@@ -14,8 +14,8 @@ from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
 from ...mechanism.program import Variant
+from ...runtime.kernels import have_wide_margins
 from ...runtime.specialise import specialise
-from ...runtime.wide_margins import have_wide_margins
 from ...support.roots import roots
 from ..feasibility.arrays import only_good
 from .found import VELOCITIES, DesignEvents, stroke_ends

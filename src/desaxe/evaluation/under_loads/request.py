@@ -19,11 +19,11 @@ from ...loads.resolve import LoadPlan
 from ...mechanism.load_lines import EDGES, NEAR_JUMP, LoadLines, TurningSense, Under
 from ...mechanism.names import LENGTHS
 from ...mechanism.own import register
-from ...runtime.accuracy import accuracy_of
 from ...runtime.kernels import KernelKey, key_of
-from ...runtime.request import Request, is_steady, request
+from ...runtime.request import Request, accuracy_of, is_steady, request
 from ...support.recent import Recent
 from ..arrays import (
+    Loops,
     are_good,
     as_array,
     broadcast_shape,
@@ -35,7 +35,6 @@ from ..arrays import (
     scratch_for,
 )
 from ..call_cache import planned
-from ..loops import Loops
 from .columns import MOTION, numeric, totals_at, totals_of_columns
 
 Array = NDArray[Any]

@@ -20,7 +20,7 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.own import Definition, using
 from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.slips import warn_of_slips
-from ...runtime.accuracy import accuracy_of
+from ...runtime.request import accuracy_of
 from ...scenes import schema
 from ...support.memory import bytes_of
 from ...support.toml import read_toml
