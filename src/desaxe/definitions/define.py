@@ -8,18 +8,20 @@ from typing import Any, NamedTuple
 from ..compiler.passes.pipeline import optimise
 from ..compiler.program import RESERVED, Line, Note, Program
 from ..compiler.text import write_function
-from ..mechanism.inputs import INPUTS
+from ..mechanism.inputs import INPUTS, Input
 from ..mechanism.names import INTERNAL, parts
 from ..mechanism.own import Definition, change, closure, derived_names, register, rows_of
+from ..mechanism.read import number_of
 from ..mechanism.spelling import did_you_mean
 from ..support.shown import shown
-from ..units.parse import coherent_unit
+from ..units.dimensions import Unit
+from ..units.parse import coherent_unit, exact_quantity, rounded
 from .dimension import NONE, dimension_of
 from .expression import FUNCTIONS, ExpressionText, Token, parse
 from .lowering import Lowering, Value
-from .units import constant_value
 
 LONGEST_NAME = 48
+LONGEST_CONSTANT = 100
 LONGEST_MEANING = 200
 # Inputs of calls, and measures of designs, which are named in the same places as quantities.
 TAKEN = frozenset((
@@ -129,7 +131,11 @@ def compiled(entry: DefinitionInputs, known: Mapping[str, Definition]) -> Defini
         raise TypeError(f"{name}: the expression is a text, got {type(entry.expression).__name__}")
     source = ExpressionText(name, entry.expression)
     tree, words = parse(source)
-    values = {constant: _constant(name, constant, value) for constant, value in entry.constants.items()}
+    constants = {
+        constant: str(value) if hasattr(value, "magnitude") else value
+        for constant, value in entry.constants.items()
+    }
+    values = {constant: _constant(name, constant, value) for constant, value in constants.items()}
     uses = _uses(source, [word for word in words if word[0] not in values and word[0] != "pi"], known, values)
     lowering = Lowering(source, {**values, **uses, "pi": Value(pi, NONE)})
     value = lowering.value(tree)
@@ -141,8 +147,8 @@ def compiled(entry: DefinitionInputs, known: Mapping[str, Definition]) -> Defini
     lines = (*lowering.lines, Line(OUTPUT, "copy", (value.argument,)))
     program = optimise(Program(tuple(uses), lines, (OUTPUT,), {OUTPUT: Note(unit, meaning, expression)}))
     text = write_function(program, "own", f"{name}, in SI units and radians.")
-    constants = tuple((constant, _stored(value)) for constant, value in entry.constants.items())
-    return Definition(name, expression, unit, meaning, constants, text)
+    stored = tuple((n, value if isinstance(value, str) else float(value)) for n, value in constants.items())
+    return Definition(name, expression, unit, meaning, stored, text)
 
 
 def _check_name(name: Any) -> None:
@@ -182,15 +188,23 @@ def _constant(owner: str, name: str, value: Any) -> Value:
     ):
         raise ValueError(f"{owner}: constant {name!r} has the name of a quantity, an input or a function")
     try:
-        number, unit = constant_value(name, value)
+        number, unit = _number_and_unit(f"constant {name}", value)
     except (ValueError, TypeError) as error:
         raise type(error)(f"{owner}: {error}") from None
     return Value(number, dimension_of(unit))
 
 
-def _stored(value: Any) -> str | float:
-    """A constant in its stored form: a number, or a text with a unit."""
-    return value if isinstance(value, str) else str(value) if hasattr(value, "magnitude") else float(value)
+def _number_and_unit(what: str, value: Any) -> tuple[float, Unit]:
+    """A constant, a number or a text such as "1 mm", in the SI unit that is returned with it."""
+    if not isinstance(value, str):
+        number = number_of(Input(what, "1", "", limit="finite"), value)
+        if number is None:
+            raise TypeError(f"{what} = {shown(value)}: expected a number or a text such as '1 mm'")
+        return number, Unit()
+    if len(value) > LONGEST_CONSTANT:
+        raise ValueError(f"{what}: {len(value)} characters are no number with a unit")
+    exact, unit = exact_quantity(f"{what} = {value!r}", value)
+    return rounded(what, value, exact), unit
 
 
 def _uses(

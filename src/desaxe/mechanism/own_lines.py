@@ -121,7 +121,7 @@ class _Writer:
             for definition in own
             for line in _value_lines(definition)
         ]
-        self.chains: dict[str, Chain] = {}
+        self.chains: dict[tuple[str, ...], Chain] = {}
         self.started = False
 
     def program(self) -> Program:
@@ -141,11 +141,11 @@ class _Writer:
             self.started = True
         if not parameters:
             return
-        value, line_of_name = line_name(base, self.own), line_name(name, self.own)
-        first = self._first(parameters[0])
-        slope = first.slope(value)
-        if len(parameters) == 2:
-            slope = self._second(first, *parameters).slope(slope) if isinstance(slope, str) else 0.0
+        line_of_name = line_name(name, self.own)
+        slope: Argument = line_name(base, self.own)
+        value = slope
+        for order in range(1, len(parameters) + 1):
+            slope = self._chain(parameters[:order]).slope(slope) if isinstance(slope, str) else 0.0
         if line_of_name not in self.known:
             # A derivative that is 0 is so only where there is a value: a factor says so, which
             # `specialise` sees to.
@@ -153,41 +153,28 @@ class _Writer:
             self._append([Line(line_of_name, op, args)])
             self.notes[line_of_name] = Note(*derivative_row(definition.name, definition.unit, parameters))
 
-    def _first(self, parameter: str) -> Chain:
-        """All first derivatives by a parameter."""
-        if parameter not in self.chains:
-            chain = _Chain(parameter, f"{PREFIX}{parameter}_")
-            slow = [leaf for leaf, by in self.needed.slow if by == parameter]
-            if slow:
-                for line in keep_outputs(self.base, slow).lines:
-                    chain.through(line)
-            for leaf in self.needed.names:
-                slope = sensitivity(leaf, parameter)
-                if leaf != parameter and slope in self.known and leaf not in slow:
-                    chain.slopes[leaf] = slope
-            for line in self.values:
-                chain.through(line)
-            self._append(chain.lines)
-            self.chains[parameter] = chain
-        return self.chains[parameter]
-
-    def _second(self, first: Chain, one: str, other: str) -> Chain:
-        """The derivatives by `other` of the first derivatives by `one`."""
-        key = f"{one} {other}"
-        if key not in self.chains:
-            chain = _Chain(other, f"{PREFIX}{one}_{other}_")
-            chain.slopes |= self._first(other).slopes
-            for leaf in self.needed.names:
-                slope, both = sensitivity(leaf, one), sensitivity(leaf, one, other)
-                if both in self.known:
-                    chain.slopes[slope] = both
-                else:
-                    chain.slopes.pop(slope, None)
-            for line in first.lines:
-                chain.through(line)
-            self._append(chain.lines)
-            self.chains[key] = chain
-        return self.chains[key]
+    def _chain(self, parameters: tuple[str, ...]) -> Chain:
+        """All derivatives by some parameters: those by the last one of the derivatives by the others."""
+        if parameters in self.chains:
+            return self.chains[parameters]
+        *before, last = parameters
+        chain = _Chain(last, f"{PREFIX}{'_'.join(parameters)}_")
+        slow = [leaf for leaf, by in self.needed.slow if by == last] if not before else []
+        for line in keep_outputs(self.base, slow).lines if slow else ():
+            chain.through(line)
+        lines = self._chain(tuple(before)).lines if before else self.values
+        chain.slopes |= self._chain((last,)).slopes if before else {}
+        for leaf in self.needed.names:
+            one, other = sensitivity(leaf, *before), sensitivity(leaf, *parameters)
+            if other in self.known and (before or (leaf != last and leaf not in slow)):
+                chain.slopes[one] = other
+            elif before:
+                chain.slopes.pop(one, None)
+        for line in lines:
+            chain.through(line)
+        self._append(chain.lines)
+        self.chains[parameters] = chain
+        return chain
 
     def _append(self, lines: Iterable[Line]) -> None:
         self.lines += lines

@@ -3,10 +3,9 @@
 from math import pi
 from typing import NamedTuple
 
-SIZES = ("ec", "AB", "BC", "r_crank", "r_rod")
+from .inputs import INPUTS
+
 FORCES = ("F_X", "F_Y")
-MASSES = ("m_crank", "m_rod", "m_slider")
-SPEEDS = ("omega0", "omega", "synchronous_speed")
 FARTHEST = 20.0  # m: no size of a mechanism is larger
 
 
@@ -26,12 +25,10 @@ TURNS = Typical(4.0 * pi, 3600.0, '"{number:.6g} deg"')
 SPEED = Typical(1000.0, 1e5, '"{number:.6g} rpm"')
 MASS = Typical(1e5, 1e8, '"{number:.6g} g"')
 GRAVITY = Typical(100.0, 1e5, '"{earth:.2f} m/s^2"')
+_BY_UNIT = {"rad": TURNS, "m": SIZE, "rad/s": SPEED, "kg": MASS, "m/s^2": GRAVITY}
 KINDS = {
-    "theta": TURNS,
-    **dict.fromkeys(SIZES, SIZE),
-    **dict.fromkeys(SPEEDS, SPEED),
-    **dict.fromkeys(MASSES, MASS),
-    **dict.fromkeys(("g_X", "g_Y"), GRAVITY),
+    **{name: _BY_UNIT[row.unit] for name, row in INPUTS.items() if row.unit in _BY_UNIT},
+    "synchronous_speed": SPEED,
     "mu": Typical(10.0, 100.0, "{hundredth:.6g}"),
     "breakdown_slip": Typical(3.0, 100.0, '"{number:.6g} %"'),
 }

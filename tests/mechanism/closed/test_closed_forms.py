@@ -8,7 +8,6 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from desaxe.compiler.interpret import run_in_doubles
 from desaxe.mechanism.closed.dead_centres import DEAD_CENTRES, SENSITIVITIES
 from desaxe.mechanism.closed.functions import closed_form
 from desaxe.mechanism.closed.inverse import INVERSE
@@ -182,17 +181,3 @@ def test_the_inverse_keeps_its_digits_next_to_a_dead_centre(long):
             for angle in angles:
                 apart = [abs(angle - one + 2 * mp.pi * k) for one in exact for k in (-1, 0, 1)]
                 assert min(apart) <= 2.0**-49, (Y, ec, AB, BC)  # a few last bits of pi
-
-
-@pytest.mark.parametrize(("text", "given"), [(LIMITS, (0.3, 1.0, 1.1)), (INVERSE, (0.7, 0.3, 1.0, 1.1))])
-def test_sensitivities_by_differentiation(text, given):
-    form = closed_form(text, **({"branch": 1.0} if text is INVERSE else {}))
-    inputs = form.program.inputs
-    found = run_in_doubles(form.with_sensitivities(*inputs), dict(zip(inputs, given, strict=True)))
-    for place, p in enumerate(inputs):
-        for k, name in enumerate(form.program.outputs[:2]):
-            up, down = (
-                form.point(*(v + step * (j == place) for j, v in enumerate(given)))[k]
-                for step in (1e-6, -1e-6)
-            )
-            assert found[f"{name}_by_{p}"] == pytest.approx((up - down) / 2e-6, rel=1e-6, abs=1e-8)

@@ -4,10 +4,8 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from ...compiler.passes.differentiate import with_derivatives
 from ...compiler.passes.pipeline import optimise
 from ...compiler.passes.slicing import keep_outputs
-from ...compiler.program import Program
 from ...compiler.text import read_function
 from ...support.computed import computed_once
 from ...support.forks import IMPORTS
@@ -37,10 +35,6 @@ class ClosedForm:
             from ...compiler.languages.arrays import compile_arrays
 
         return np.errstate(all="ignore")(compile_arrays(self.program, np))
-
-    def with_sensitivities(self, *parameters: str) -> Program:
-        """The program with the derivative of each output, a number, by each parameter, by differentiation."""
-        return with_derivatives(self.program, parameters)
 
 
 @cache
