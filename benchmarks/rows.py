@@ -101,6 +101,19 @@ def peaks() -> Ways:
     }
 
 
+@row
+def few_peaks() -> Ways:
+    """Peaks of one design, of 200 and of 200 with friction: values differ, and are not compared."""
+    ec = np.linspace(0.0, 0.1, 200)
+    one = partial(dx.peak, "a_C", ec=0.05, AB=0.1, BC=0.35, omega0=30.0)
+    many = partial(dx.peak, "T_in", ec=ec, F_Y=-100.0, threads=1, **LOADED)
+    return {
+        "one": Way(lambda: one() and None),
+        "200 of T_in": Way(lambda: many() and None, ec.size),
+        "200 of T_in with friction": Way(lambda: many(mu=0.1) and None, ec.size),
+    }
+
+
 def _dense(designs: Mapping[str, Array], block: int) -> Callable[[], Array]:
     """The dense grid, some designs at a time: what fits in the caches is best."""
     from .formulas import lambdified  # which needs SymPy

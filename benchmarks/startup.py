@@ -34,6 +34,14 @@ CALLS = {
     "`peak` of the torque of 1,000 designs": (
         'dx.peak("T_in", **{**MASSES, "ec": DESIGNS[::2]}, omega0=157.08)'
     ),
+    "`peak` of one design": 'dx.peak("j_C", ec=0.01, **CRANK)',
+    "`peak` of the torque of 200 designs, friction": (
+        'dx.peak("T_in", **{**MASSES, "ec": DESIGNS[:200]}, mu=0.1, omega0=157.08)'
+    ),
+    "`peak` of the torque of 200 designs, a load over the stroke": (
+        'dx.peak("T_in", **{**MASSES, "ec": DESIGNS[:200]}, omega0=157.08, '
+        'F_Y=dx.over_stroke([0.0, 0.1, 0.2], [-400.0, -100.0, 0.0], dead_centre="inner"))'
+    ),
     "`events` of 2,000 designs": "dx.events(ec=DESIGNS, **LENGTHS)",
     "`simulate`, one motion": "dx.simulate(torque=1.0, t_end=0.1, **MASSES)",
     "`simulate`, one motion, derivatives by two inputs": (

@@ -23,7 +23,7 @@ from ..runtime.threads import run_parts
 from ..support.progress import Portions, progress_bar
 from .course import course_of
 from .differences import with_slopes
-from .evaluations import Evaluations, evaluations_of
+from .evaluations import Evaluations
 from .jumps import at_jumps
 from .loaded import Rows, ValuesUnderLoads
 from .nodes import Array, classes, shared_nodes
@@ -47,7 +47,7 @@ KINDS = ("absmax", "max", "min")
 LARGE = 1_000  # designs that may take long: a bar tells
 MOST = 2**16  # values at a time, so that their arrays stay in the cache
 # Designs of a part: at least what pays for a thread, at most half a second of work.
-USUAL_PART, COSTLY_PART = (2_048, 65_536), (64, 1_024)
+USUAL_PART, COSTLY_PART = (8_192, 65_536), (512, 1_024)
 SPECIAL_BLOCK = 1_024  # designs
 
 
@@ -210,7 +210,7 @@ class PartialSearch:
     def _quantity(self, name: str, key: Search) -> Quantity:
         """The quantity of a search; under loads all designs have one form."""
         return (
-            evaluations_of(key)
+            Evaluations(key)
             if self.course is None
             else ValuesUnderLoads(name, key, self.designs, self.course)
         )
@@ -238,7 +238,7 @@ class PartialSearch:
     def _search_usual(self) -> None:
         """Search the designs that turn fully and at all angles have one balance of forces."""
         usual = self.work.usual
-        quantity = evaluations_of(usual) if self.course is None else self.quantity
+        quantity = Evaluations(usual) if self.course is None else self.quantity
         for rows, grid in _classed(self.designs, np.flatnonzero(~self.special)):
             nodes = grid[:, None]
             if self.course is not None:

@@ -1,8 +1,8 @@
 """Values of a quantity in machine code: with its slope, and both with the gradient."""
 
-from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Callable, Mapping, Sequence
 from math import prod
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,12 +11,15 @@ from ..compiler.lowering import nest
 from ..compiler.program import Program
 from ..runtime.executor import CompiledKernel
 from ..runtime.native_calls import bind_kernel, ufunc_of
+from ..support.forks import ForkSafeLock
 from ..support.interrupts import finished
+from ..support.recent import Recent
 from .nodes import Array
 from .programs import Search, programs_of
 from .special import SearchedDesigns
 
 MOST_KEPT = 256
+T = TypeVar("T")
 
 
 class ProgramFunction:
@@ -60,39 +63,46 @@ def _flat(values: Array, shape: tuple[int, ...]) -> Array:
     return np.broadcast_to(values, shape).reshape(-1)
 
 
-@lru_cache(maxsize=MOST_KEPT)
-def totals_of(search: Search) -> tuple[TotalsFunction, TotalsFunction]:
-    """Value and slope under loads, and these with the gradient, compiled once a process."""
-    programs, under = programs_of(search), search.form.under
-    tables = [] if under is None else [load.force for load in under.loads if load.over]
-    return TotalsFunction(programs.curve, tables), TotalsFunction(programs.finish, tables)
+class Evaluations(NamedTuple):
+    """The quantity of a search, for blocks of its inputs (see `search`)."""
 
-
-class Evaluations:
-    """The quantity of a search, for blocks of its `inputs` (see `search`)."""
-
-    def __init__(self, search: Search) -> None:
-        """Compile it."""
-        programs = programs_of(search)
-        self.inputs = programs.inputs
-        arguments = ("theta", *programs.inputs)
-        self._curve, self._finish = (ProgramFunction(p, arguments) for p in (programs.curve, programs.finish))
+    key: Search
 
     def block(self, designs: SearchedDesigns, rows: NDArray[np.intp]) -> Array:
         """The inputs of designs for `curve` and `finish`."""
-        return np.stack([designs.columns[name][rows] for name in self.inputs])
+        return np.stack([designs.columns[name][rows] for name in programs_of(self.key).inputs])
 
     def curve(self, theta: Array, block: Array) -> tuple[Array, Array]:
         """Value and slope at angles that broadcast with the rows of the block."""
-        value, slope = self._curve.call(theta, *block)
+        value, slope = compiled(_of_designs, self.key, "curve").call(theta, *block)
         return value, slope
 
     def finish(self, theta: Array, block: Array) -> Array:
         """Value, slope and gradient at an angle of each design: a row each."""
-        return np.array(self._finish.call(theta, *block))
+        return np.array(compiled(_of_designs, self.key, "finish").call(theta, *block))
 
 
-@lru_cache(maxsize=MOST_KEPT)
-def evaluations_of(search: Search) -> Evaluations:
-    """The evaluations of a search, compiled once a process."""
-    return Evaluations(search)
+def _of_designs(key: Search, part: str) -> ProgramFunction:
+    programs = programs_of(key)
+    return ProgramFunction(getattr(programs, part), ("theta", *programs.inputs))
+
+
+def totals_of(key: Search, part: str) -> TotalsFunction:
+    """The totals of a search under loads: `curve`, value and slope, or `finish`, these with the gradient."""
+    under = key.form.under
+    tables = [] if under is None else [load.force for load in under.loads if load.over]
+    return TotalsFunction(getattr(programs_of(key), part), tables)
+
+
+_LOCK = ForkSafeLock()
+_KEPT: Recent[Any, Any] = Recent(MOST_KEPT)
+
+
+def compiled(make: Callable[..., T], *key: Any) -> T:
+    """`make(*key)`, once a process: several threads that want the same wait for the first."""
+    found: T | None = _KEPT.get((make, *key))
+    if found is None:
+        with _LOCK:
+            found = _KEPT.get((make, *key)) or make(*key)
+            _KEPT[make, *key] = found
+    return found

@@ -16,9 +16,9 @@ from ..evaluation.values import values
 from ..loads.resolve import Forces, LoadPlan
 from ..mechanism.names import parts, sensitivity
 from .course import Course
-from .evaluations import evaluations_of, totals_of
+from .evaluations import Evaluations, compiled, totals_of
 from .nodes import Array
-from .programs import Search, needs_own
+from .programs import Search, needs_own, programs_of
 from .special import SearchedDesigns
 from .under import over_theta_at, search_under
 
@@ -38,7 +38,7 @@ class ValuesUnderLoads:
         self.derived = not needs_own(search.name, ("theta", *search.parameters))
         self.plans: dict[int, LoadPlan] = {}
         under = search_under(search, self.all, designs) if self.derived else None
-        self.totals = None if under is None else totals_of(under)
+        self.under = under
         self.tables = table_arrays(designs.loads)
 
     def at(self, count: int, rows: Rows, theta: Array, pieces: dict[str, Rows] | None = None) -> list[Array]:
@@ -48,7 +48,7 @@ class ValuesUnderLoads:
         """
         held = self.course.pieces(rows, theta) if pieces is None else pieces
         aside = self.course.aside(rows, theta) if pieces is None and self.designs.rubs else theta
-        by = self._of_totals if self.totals is not None else self._of_good
+        by = self._of_totals if self.under is not None else self._of_good
         found = [*by(count, rows, aside, held)][:count]
         if aside is not theta:
             found[0] = np.where(aside == theta, found[0], found[0] + found[1] * (theta - aside))
@@ -56,8 +56,7 @@ class ValuesUnderLoads:
 
     def _of_totals(self, count: int, rows: Rows, theta: Array, held: dict[str, Rows]) -> Sequence[Array]:
         """By machine code."""
-        assert self.totals is not None
-        totals = self.totals[count > 2]
+        totals = compiled(totals_of, self.under, "curve" if count == 2 else "finish")
         inputs = {**self.tables, **over_theta_at(self.designs.loads, theta), "theta": theta}
         inputs |= {f"{force}_piece": piece.astype(float) for force, piece in held.items()}
         columns = self.designs.columns
@@ -92,8 +91,8 @@ class ValuesUnderLoads:
         names = [base, *(sensitivity(base, p) for p in ("theta", *self.search.parameters))]
         _, forces = self._forces(names, inputs, held)
         columns = {**inputs, **forces.values}
-        quantity = evaluations_of(self.search)
-        out = quantity.finish(inputs["theta"], np.stack([columns[n] for n in quantity.inputs]))
+        block = np.stack([columns[n] for n in programs_of(self.search).inputs])
+        out = Evaluations(self.search).finish(inputs["theta"], block)
         fixed = out.copy()
         for (force, parameter), slope in forces.slopes.items():
             place = 1 if parameter == "theta" else 2 + self.search.parameters.index(parameter)

@@ -11,11 +11,10 @@ STEP   of Newton's method on the slope, whose derivative is that of the quartic 
        is at `x` itself
 """
 
-from functools import cache
 from typing import Any
 
 from ..compiler.text import read_function
-from .evaluations import ProgramFunction
+from .evaluations import ProgramFunction, compiled
 
 BOUND = """
 def bound(width, value_a, value_b, top_a, top_b, a, b):
@@ -87,20 +86,19 @@ def step(x, slope, low, high, sign, width, size, bend, last_x, last_slope):
 
 def upper_bounds(*arrays: Any) -> Any:
     """BOUND of arrays that broadcast."""
-    return _compiled(BOUND).call(*arrays)
+    return compiled(_of_text, BOUND).call(*arrays)
 
 
 def first_guess(*arrays: Any) -> Any:
     """GUESS of arrays that broadcast."""
-    return _compiled(GUESS).call(*arrays)
+    return compiled(_of_text, GUESS).call(*arrays)
 
 
 def newton_step(*arrays: Any) -> Any:
     """STEP of arrays that broadcast."""
-    return _compiled(STEP).call(*arrays)
+    return compiled(_of_text, STEP).call(*arrays)
 
 
-@cache
-def _compiled(text: str) -> ProgramFunction:
+def _of_text(text: str) -> ProgramFunction:
     program = read_function(text)
     return ProgramFunction(program, program.inputs)
