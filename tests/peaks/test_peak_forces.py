@@ -2,11 +2,13 @@
 
 import math
 
+import mpmath
 import numpy as np
 import pytest
 
 import desaxe as dx
 from desaxe.oracle.force_truth import truth
+from tests.effort import cases
 
 ENGINE = {"AB": 0.04, "BC": 0.064, "m_rod": 0.5, "m_slider": 0.8}
 MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
@@ -75,6 +77,47 @@ def test_an_extremum_next_to_an_angle_from_which_friction_jams(name, kind, ec, A
     assert sign * found["value"] == pytest.approx(float(exact[1]), rel=1e-11)
     assert exact[1] > max(exact[0], exact[2])
     assert sign * found["value"] >= np.nanmax(sign * dx.evaluate(name, theta=THETA, **design)) - 1e-11
+
+
+def refined(name, sign, theta, design):
+    """The largest of a sweep, and the largest next to it by golden section on free bodies at 50 digits."""
+    swept = sign * dx.evaluate(name, theta=theta, **design)
+    k = int(np.nanargmax(swept))
+    low, high = (mpmath.mpf(theta[max(0, min(theta.size - 1, k + step))]) for step in (-1, 1))
+
+    def value(angle):
+        exact = truth(name, theta=float(angle), **design)
+        return -mpmath.inf if mpmath.isnan(exact) else sign * exact
+
+    for _ in range(60):
+        first, second = high - (high - low) / mpmath.phi, low + (high - low) / mpmath.phi
+        low, high = (low, second) if value(first) > value(second) else (first, high)
+    return max(float(value(low)), float(value(high)), float(value(theta[k])))
+
+
+@pytest.mark.sampled
+@pytest.mark.filterwarnings("ignore::desaxe.UnitWarning")  # random forces on thin rods
+def test_peaks_with_friction_are_those_of_free_bodies():
+    """Random designs of both branches that turn fully; values are finite where friction never jams."""
+    for seed in range(cases(6, 40, 1000)):
+        rng = np.random.default_rng([seed, 50])
+        AB = rng.uniform(0.03, 0.07)
+        ec, mu = rng.uniform(-0.9, 0.9) * AB * rng.integers(0, 2), rng.uniform(0.01, 0.3)
+        BC = max(
+            AB + abs(ec) + AB * np.exp(rng.uniform(-9.0, 1.5)), (AB + abs(ec)) * np.hypot(1.0, 1.05 * mu)
+        )
+        design = {"ec": ec, "AB": AB, "BC": BC, "mu": mu, "omega0": rng.uniform(5.0, 50.0), **PRESS}
+        design |= {"F_Y": rng.uniform(-200.0, 200.0), "branch": rng.choice([1, -1]).item()}
+        name = rng.choice(["T_in", "N_C", "F_B_Y", "F_A_X"]).item()
+        kind, sign = (("max", 1.0), ("min", -1.0))[rng.integers(2)]
+        found = dx.peak(name, kind=kind, **design)
+        if found["status"] in (5, 6):
+            continue
+        theta = np.linspace(0.0, 2.0 * np.pi, 4001)
+        best, value = refined(name, sign, theta, design), sign * found["value"]
+        assert value >= best - 1e-11 * abs(best), seed
+        beside = [sign * truth(name, theta=found["theta"] + s, **design) for s in (-1e-12, 0.0, 1e-12)]
+        assert min(abs(float(exact) - value) for exact in beside) <= 1e-9 * abs(value), seed
 
 
 @pytest.mark.parametrize("parameter", ["ec", "AB", "BC", "omega0", "m_rod", "m_slider", "mu"])
