@@ -17,9 +17,11 @@ import sympy
 from desaxe import compiler
 from desaxe.compiler.builder import module_text, with_sources
 from desaxe.compiler.cost import cost_of
-from desaxe.compiler.languages.numba.library import HELPER_FILE, Library, emit_helpers, emit_library
+from desaxe.compiler.languages.numba.library import HELPER_FILE, emit_helpers, emit_in_folder
+from desaxe.compiler.languages.protocol import Forms, Module, Symbol
 from desaxe.compiler.passes.bind import assume
 from desaxe.compiler.passes.double_angles import DoubleTrigonometry
+from desaxe.compiler.passes.guard import guard_inputs
 from desaxe.compiler.passes.pipeline import optimise
 from desaxe.compiler.passes.slicing import keep_outputs
 from desaxe.compiler.passes.trigonometry import Trigonometry
@@ -183,21 +185,29 @@ def _group(derivation: Derivation, group: Group, digest: str) -> str:
         for wide in (False, True)
     )
     centres = {name: link for name, link in zip(CENTRES, ("AB", "BC"), strict=True) if name in stable.inputs}
-    library = Library(
-        head=_head(derivation, group, stable, plain, digest),
-        what=group.what,
-        stable=stable,
-        plain=plain,
-        angle="theta",
-        sines={"sin": "sin_theta", "cos": "cos_theta"},
-        test=optimise(keep_outputs(derivation.program, ("wide_margins",))),
+    names = [name for name in stable.inputs if name != "branch"]
+    test = optimise(keep_outputs(derivation.program, ("wide_margins",)))
+    own = [name for name in names if name not in test.inputs]  # a design that passes has good lengths
+    forms = Forms(
+        group.outputs.index("status") if "status" in group.outputs else -1,
+        guard_inputs(stable, names, LEAST, {}),
+        guard_inputs(plain, own, LEAST, {}),
+        test,
+    )
+    module = Module(
+        name=group.name,
+        head=(),
+        inputs=tuple(Symbol(name, *_meaning(derivation, name)) for name in names),
+        outputs=tuple(Symbol(name, *_meaning(derivation, name)) for name in group.outputs),
+        forms=forms,
         constants=derivation.trigonometry,
-        units={name: _meaning(derivation, name)[0] for name in (*stable.inputs, *stable.outputs)},
+        what=group.what,
+        angle="theta",
         defaults=dict.fromkeys({"alpha", *LOADS} - set(CENTRES), "0.0"),
         centres=centres,
-        least=LEAST,
+        functions=False,
     )
-    return emit_library(library)
+    return emit_in_folder(module, _head(derivation, group, stable, plain, digest))
 
 
 def _head(derivation: Derivation, group: Group, stable: Program, plain: Program, digest: str) -> str:
@@ -216,7 +226,7 @@ _USE = """    point(...)      numbers to a tuple of OUTPUTS, also inside of an @
     evaluate(...)   arrays that broadcast, to a dict of arrays
     grid(...)       one dimension for each input of one dimension, in the order of the inputs
 
-What has no value is NaN, and so is a point with |theta| > 1.6e6 rad. SI units and radians:"""
+What has no value is NaN. SI units and radians:"""
 
 
 def _meaning(derivation: Derivation, name: str) -> tuple[str, str]:

@@ -154,7 +154,7 @@ def test_a_point_is_called_from_a_loop_of_ones_own():
         ({"theta": "1"}, "theta: expected real numbers, got <U1"),
         ({"branch": 2}, "branch = 2: it is \\+1 or -1"),
         ({"out": {"Y": np.empty(3)}}, "out= is a dict with the keys Y, V_C, a_C, got Y"),
-        ({"out": dict.fromkeys(("Y", "V_C", "a_C"), np.empty(2))}, r"out= for Y: expected an array of float64 of the shape \(\)"),
+        ({"out": dict.fromkeys(("Y", "V_C", "a_C"), np.empty(2))}, r"out= for Y: expected float64 of the shape \(\)"),
     ],
 )
 def test_what_is_wrong_is_named(change, message):

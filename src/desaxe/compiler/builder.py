@@ -124,7 +124,12 @@ def function_text(name: str, parameters: Sequence[str], body: Sequence[str]) -> 
     head = [f"def {name}({', '.join(parameters)}):"]
     if len(head[0]) > WIDTH:
         head = [f"def {name}(", *(INDENT + row for row in wrap(", ".join(parameters) + ",", WIDTH)), "):"]
-    return "\n".join([*head, *(INDENT + row for row in body)]) + "\n"
+    return "\n".join([*head, *(INDENT + row if row else "" for row in body)]) + "\n"
+
+
+def quoted(value: object) -> str:
+    """A constant as text, in double quotes."""
+    return repr(value).replace("'", '"')
 
 
 def renamed(text: str, names: Mapping[str, str], called: bool = False) -> str:

@@ -2,6 +2,7 @@
 
 protocol    what is written (`Module`), and what a language must have (`Language`)
 shared      assignments as statements, comments
+lifted      sines and cosines of arguments as arguments
 words       names that a language, or what it writes, keeps for itself
 c/          C99: a header and a source, no allocation, no global state
 jax         Python over jax.numpy, with derivatives by name

@@ -15,6 +15,7 @@ from .protocol import Language, Module, Symbol
 from .shared import (
     arrays_of,
     called,
+    documented,
     numbers,
     one_line,
     statements,
@@ -114,6 +115,10 @@ HELPERS = {
     return where((quarters + 1.0) % 4.0 >= 2.0, -value, value)
 ''',
 }
+USE = (
+    'It needs jax, and nothing of desaxe. Float64 wants jax.config.update("jax_enable_x64", True);',
+    "float32 arrays are computed in float32.",
+)
 RULES = '''def with_derivatives(name, function):
     """A function of all INPUTS whose derivatives are the functions in DERIVATIVES."""
     known = custom_jvp(function)
@@ -170,32 +175,9 @@ def _text(module: Module) -> str:
     body = "\n\n".join([*_content(module), RULES, *functions, _tables(module), *public, evaluate])
     helpers = with_helpers("\n".join(functions), HELPERS)
     code = "\n\n".join([*helpers, body])
-    return "\n".join([_docstring(module), "", *_imports(code), "", "", code.rstrip("\n"), ""]).replace(
-        "\n\n\n\n", "\n\n\n"
-    )
-
-
-def _docstring(module: Module) -> str:
-    rows = [
-        f"  {group:8} {symbol.name} [{symbol.unit}]: {symbol.meaning}"
-        for group, symbols in (("inputs", module.inputs), ("outputs", module.outputs))
-        for symbol in symbols
-    ]
-    lines = [
-        *module.head,
-        "",
-        'It needs jax, and nothing of desaxe. Float64 wants jax.config.update("jax_enable_x64", True);',
-        "float32 arrays are computed in float32.",
-        "",
-        *rows,
-        "",
-        "SPDX-License-Identifier: MIT",
-    ]
-    return (
-        '"""'
-        + "\n".join(one_line(line) if line[:1] != " " else f"  {one_line(line)}" for line in lines)
-        + '\n"""'
-    )
+    return "\n".join(
+        [f'"""{documented(module, USE)}"""', "", *_imports(code), "", "", code.rstrip("\n"), ""]
+    ).replace("\n\n\n\n", "\n\n\n")
 
 
 def _content(module: Module) -> list[str]:

@@ -5,10 +5,10 @@ constants. It knows no mechanism. A language turns it into the texts of one or m
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from ..kernel import Kernel
+from ..builder import Parts
 from ..operations import Content
 from ..passes.trigonometry import Trigonometry
 from ..program import Program
@@ -27,14 +27,16 @@ class Forms(NamedTuple):
     """The outputs in one or two forms, and the test that selects the form.
 
     `stable` holds everywhere. `plain` needs fewer operations and holds where `test`, a Program with one
-    output, a condition, says so. All inputs are arguments of the module; its outputs come first, and the
-    status, if it is none of them, last. `status` is the status's index.
+    output, a condition, says so. All inputs are arguments of the module; its outputs come first, then the
+    status, if it is none of them. `status` is the status's index, -1 without one. Where `rounded`, sums and
+    products are rounded as they stand, which twice the digits need.
     """
 
     status: int
     stable: Program
     plain: Program | None = None
     test: Program | None = None
+    rounded: bool = False
 
 
 class Solver(NamedTuple):
@@ -63,6 +65,17 @@ class Module(NamedTuple):
                  arguments, and the sign of the speed, which only friction takes
     constants    of the written-out sine and cosine; beyond their limit they are wrong
     tables       name -> knots and coefficients of a table that Programs look into
+
+    Of Python that people import (numba):
+
+    what         the results in words
+    angle        an input of which Programs take sine and cosine, which an array has computed ahead
+    fixed        inputs of the Programs that callers do not give: numbers
+    defaults     input -> the text of its default
+    centres      input -> the input of which it is half by default
+    functions    whether each result has a function of its own, too
+    more         further functions
+    uses         lines on these, for the opening comment
     """
 
     name: str
@@ -77,6 +90,14 @@ class Module(NamedTuple):
     arguments: Mapping[str, Sequence[str]] = {}
     motion: Solver | None = None
     tables: Mapping[str, Content] = {}
+    what: str = "the results"
+    angle: str = ""
+    fixed: Mapping[str, float] = {}
+    defaults: Mapping[str, str] = {}
+    centres: Mapping[str, str] = {}
+    functions: bool = True
+    more: Parts | None = None
+    uses: tuple[str, ...] = ()
 
     def taken(self, name: str) -> list[str]:
         """The arguments of a result's own function, in order."""
@@ -92,7 +113,7 @@ class Language(ABC):
     about: str  # what is written, for `desaxe compile --help`
     second_order = False  # whether `derivatives` and `values` are wanted
     extended = True  # whether sums and products are rounded as they stand, which twice the digits want
-    loops: Callable[[Kernel, str], str] | None = None  # writes a loop nest as a module
+    only_file = False  # whether a path is always that of the file
 
     @abstractmethod
     def files(self, module: Module) -> dict[str, str]:

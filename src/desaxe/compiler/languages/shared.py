@@ -9,6 +9,7 @@ from textwrap import wrap
 from ..operations import Content
 from ..program import Program, renamed
 from ..text import with_short_temporaries, write_lines
+from .protocol import Module
 
 _WORD = re.compile(r"\b(nan|inf|True|False)\b")
 
@@ -108,6 +109,18 @@ def arrays_of(tables: Mapping[str, Content]) -> dict[str, Sequence[float]]:
         for name, table in tables.items()
         for end, column in zip("xc", table, strict=True)
     }
+
+
+def documented(module: Module, use: Iterable[str]) -> str:
+    """The docstring of a Python module: its head, its use, its inputs and outputs."""
+    rows = [
+        f"  {group:8} {symbol.name} [{symbol.unit}]: {one_line(symbol.meaning)}"
+        for group, symbols in (("inputs", module.inputs), ("outputs", module.outputs))
+        for symbol in symbols
+    ]
+    return "\n".join(
+        [*map(one_line, module.head), "", *use, "", *rows, "", "SPDX-License-Identifier: MIT", ""]
+    )
 
 
 def one_line(text: str) -> str:

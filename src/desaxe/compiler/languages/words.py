@@ -96,18 +96,18 @@ _JAX = frozenset((
 _NUMBA = frozenset((
     *keyword.kwlist,
     # built in
-    "ImportError", "OverflowError", "RuntimeError", "TypeError", "ValueError", "abs", "dict", "enumerate",
-    "float", "int", "len", "list", "max", "min", "range", "set", "str", "sum", "tuple", "type", "zip",
+    "OverflowError", "RuntimeError", "TypeError", "ValueError", "abs", "bool", "dict", "enumerate", "float",
+    "int", "isinstance", "len", "list", "max", "min", "range", "set", "str", "sum", "tuple", "type", "zip",
     # imported
-    "Any", "Lock", "ThreadPoolExecutor", "annotations",
-    "append", "arange", "array", "asarray", "ascontiguousarray", "atan2",
-    "broadcast_arrays", "broadcast_to", "cgutils", "codegen", "copysign", "cos", "cpu_count", "empty", "exp",
-    "fabs", "float64", "floor", "frexp", "full", "inf", "int64", "int8", "intrinsic", "isfinite", "linspace",
-    "log", "nan", "njit", "pi", "pow", "prod", "sched_getaffinity", "searchsorted", "sin", "sqrt", "types",
-    "uint64", "unique", "where", "zeros",
+    "Any", "ThreadPoolExecutor", "annotations", "append", "arange", "arcsinh", "argmax", "array", "asarray",
+    "ascontiguousarray", "atan2", "broadcast_shapes", "broadcast_to", "can_cast", "concatenate", "copysign",
+    "copyto", "cos", "cpu_count", "empty", "exp", "fabs", "float64", "floor", "fmax", "frexp", "inf", "int64",
+    "int8", "intrinsic", "isfinite", "ldexp", "linspace", "log", "nan", "ndarray", "njit", "overload", "pi",
+    "pow", "prod", "sin", "sinh", "sqrt", "take_along_axis", "types", "uint64", "unique", "where", "zeros",
     # defined
-    "AXES", "COMPILED", "FIXED", "INPUTS", "LOCK", "OUTPUTS", "PARTS", "PEAKS", "chosen", "compiled",
-    "doubles", "evaluate", "in_blocks", "point", "reduced", "run", "scalar", "spaced", "with_axes",
+    "AXES", "BLOCK", "INPUTS", "OUTPUTS", "UNITS", "block", "compiled", "evaluate", "fill", "fill_rows",
+    "formulas", "grid", "has_wide_margins", "plain", "point", "reduced", "run", "spaced", "stable",
+    "with_axes",
 ))  # fmt: skip
 
 # What a module imports, and what that imports in turn.

@@ -9,19 +9,9 @@ import numpy as np
 from ...mechanism.catalogue import of_design
 from ...mechanism.names import LENGTHS
 from ...runtime.request import request
-from ...support.template import file_text, filled
 from ..content import Content
 from ..reading.spread import in_parts
 from .functions import spaced
-
-
-def axes_of(content: Content) -> list[str]:
-    """The axes of a scene in loop order: one that is reduced is the last; a grid has one before it."""
-    found = [name for name, value in content.inputs.items() if isinstance(value, tuple)]
-    if content.fused is None:
-        return found or [""]
-    rest = [name for name in found if name != content.fused.axis]
-    return [*(rest or [""]), content.fused.axis]
 
 
 def own_axes(content: Content, names: Iterable[str]) -> dict[str, list[str]]:
@@ -52,30 +42,6 @@ def axis_rows(name: str, values: Sequence[float], indent: str, width: int) -> li
 def number_rows(values: Sequence[float], width: int) -> list[str]:
     """Numbers as rows of an array in a text."""
     return wrap(", ".join(map(repr, values)) + ",", width)
-
-
-def chosen_text(axes: Iterable[str], limit: float | None) -> str:
-    """`chosen`: the axes of a run; angles are checked against the largest one that is reduced exactly."""
-    check = []
-    if limit is not None and "theta" in axes:
-        reach = text_file("chosen_reach")
-        check = filled(reach, LIMIT=repr(limit), ROUNDED=f"{limit:.0f}").splitlines()
-    return filled(text_file("chosen"), CHECK=check)
-
-
-def text_file(name: str) -> str:
-    """The text of a function with places for what depends on the scene."""
-    return file_text(__package__, "texts", f"{name}.txt")
-
-
-def arguments_of(axes: Iterable[str]) -> str:
-    """The parameters of a function whose axes may be given in the place of the scene's."""
-    return ", ".join(["*", *(f"{name}=None" for name in axes), "threads=None"])
-
-
-def taken_from(axes: Iterable[str]) -> str:
-    """The call that looks up the axes."""
-    return f"chosen({', '.join(f'{name}={name}' for name in axes)})"
 
 
 def rule_of(values: Sequence[float]) -> str:

@@ -22,9 +22,11 @@ from ..scene import Scene
 from ..scene import scene as scene_of
 from ..schema import SceneError
 from .fmu.write import fmu_of
-from .numba_module import text_of
+from .numba_module import numba_module_of
 from .peaks import left_out_of_module
 from .portable import Order, left_out, module_of
+
+DEFAULT = "numba"
 
 
 @with_known_keywords
@@ -111,22 +113,24 @@ def _generated(scene: Scene, place: Path, to: str) -> Generated:
     refuse_taken(scene.content.outputs, words.outputs)
     is_file = place.suffix == language.suffix
     name = place.stem if is_file else place.name
-    if language.loops is not None:
+    if language.only_file:
         _require_importable(place, words.modules)
-        return Generated(place.parent, {place.name: sealed(text_of(scene, place.name))})
-    require_name(name, place, words.modules)
+    else:
+        require_name(name, place, words.modules)
     folder = place.parent if is_file else place
     source = Path(scene.name).name
-    said = f"desaxe compile {source} --to {to} -o {place.name}"
+    option, keyword = (f" --to {to}", f', to="{to}"') if to != DEFAULT else ("", "")
+    said = f"desaxe compile {source}{option} -o {place.name}"
     if not source:
-        said = f'desaxe.compile(scene, "{place.name}", to="{to}")'
-    module = module_of(scene, Order(to, name, said, language.second_order))
+        said = f'desaxe.compile(scene, "{place.name}"{keyword})'
+    make = numba_module_of if to == "numba" else module_of
+    module = make(scene, Order(to, name, said, language.second_order))
     return Generated(folder, {file: sealed(text) for file, text in language.files(module).items()})
 
 
 def lost_of(content: Content, to: str) -> list[str]:
     """The parts of a scene that its module in a language leaves out, by name."""
-    return left_out(content) if language_of(to).loops is None else left_out_of_module(content)
+    return left_out_of_module(content) if to == "numba" else left_out(content)
 
 
 def require_name(name: str, place: Path, words: Container[str]) -> None:

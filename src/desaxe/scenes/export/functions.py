@@ -4,43 +4,31 @@ The module itself has the other names that they call.
 """
 # ruff: noqa: F821
 
-from concurrent.futures import ThreadPoolExecutor
-from math import prod
-from os import cpu_count
+from math import pi, prod
 
 from numpy import (
+    append,
     arange,
-    asarray,
+    arcsinh,
+    argmax,
+    array,
     ascontiguousarray,
-    broadcast_shapes,
     broadcast_to,
+    concatenate,
     empty,
-    errstate,
     float64,
+    frexp,
+    inf,
     int8,
     isfinite,
+    ldexp,
+    nan,
+    sinh,
+    take_along_axis,
+    unique,
     where,
-)  # fmt: skip
-
-
-def doubles(**inputs):
-    """The inputs in doubles; text, which may carry a unit, is refused."""
-    held = {name: asarray(given) for name, given in inputs.items()}
-    for name, numbers in held.items():
-        if numbers.dtype.kind in "US":
-            raise TypeError(f"{name} = {inputs[name]!r}: expected numbers in SI units, not text")
-    return [asarray(numbers, float64) for numbers in held.values()]
-
-
-def in_blocks(block, length, points, threads):
-    """Call block(start, stop) for as many parts of an axis as there are threads that pay."""
-    cores = len(sched_getaffinity(0)) if sched_getaffinity else cpu_count() or 1
-    count = max(1, min(threads or cores, points // 20_000, length))
-    edges = [length * k // count for k in range(count + 1)]
-    if count == 1:
-        return block(0, length)
-    with ThreadPoolExecutor(count) as pool:
-        list(pool.map(block, edges[:-1], edges[1:]))
+    zeros,
+)
 
 
 def spaced(first, rest, step, num):
@@ -55,16 +43,118 @@ def spaced(first, rest, step, num):
     return value + (more + (lost + (k * step[2] + rest)))
 
 
-def with_axes(axes, given):
-    """The axes of the scene, with those that are given in their places: 1-d arrays in the same order."""
+def with_axes(axes, inputs):
+    """The axes, those that are given in their places: arrays of one dimension in the same order."""
     axes = dict(axes)
-    for name, values in given.items():
+    for name, values in inputs.items():
         if values is not None:
-            (numbers,) = doubles(**{name: values})
-            if numbers.ndim > 1:
-                raise ValueError(f"{name}: expected a number or one dimension, got the shape {numbers.shape}")
-            axes[name] = ascontiguousarray(numbers.reshape(-1))
+            column = column_of(name, values)
+            if column.ndim > 1:
+                raise ValueError(f"{name}: expected a number or one dimension, got the shape {column.shape}")
+            axes[name] = ascontiguousarray(column.reshape(-1))
     return axes
+
+
+# ---- reductions -------------------------------------------------------------------------------------
+
+
+def reduced(grid_over, axes, along, kinds):
+    """Outputs over axes, reduced along the last of them, a part of the grid at a time."""
+    first, *rest = [name for name in axes if name != along] or [along]
+    size = axes[first].size if first != along else 1
+    step = max(1, 2**20 // max(1, axes[along].size * prod(axes[name].size for name in rest)))
+    parts = []
+    for start in range(0, max(size, 1), step):
+        part = {} if first == along else {first: axes[first][start : start + step]}
+        grid = grid_over(axes | part)
+        parts.append([reductions(name, rows, along, axes[along], kinds) for name, rows in grid.items()])
+    whole = [{key: column for one in part for key, column in one.items()} for part in parts]
+    if len(whole) == 1:
+        return whole[0]
+    return {key: concatenate([part[key] for part in whole]) for key in whole[0]}
+
+
+def reductions(name, rows, along, places, kinds):
+    """The reductions of rows by name; what has no value (NaN) is skipped and counted."""
+    good = rows == rows
+    count = good.sum(axis=-1)
+    found = {}
+    for kind in kinds:
+        if kind in ("mean", "rms"):
+            values = where(good, rows, 0.0)
+            mean = exact_mean(values, count) if kind == "mean" else root_mean_square(values, count)
+            found[f"{name}_{kind}"] = where(count > 0, mean, nan)
+            continue
+        score = abs(rows) if kind == "absmax" else -rows if kind == "min" else rows
+        # Before the first -inf that is a number there may be one that stands for a NaN.
+        best = where(good, score, -inf)
+        index = first_true(best == best.max(axis=-1, keepdims=True, initial=-inf))
+        index = where(take_along(good, index), index, first_true(good))
+        value = where(count > 0, take_along(rows, index), nan)
+        found[f"{name}_{kind}"] = abs(value) if kind == "absmax" else value
+        found[f"{name}_{kind}_{along}"] = append(places, nan)[where(count > 0, index, places.size)]
+    return found | {f"{name}_skipped": rows.shape[-1] - count}
+
+
+def first_true(rows):
+    """The index of the first True of each row, 0 without one."""
+    return argmax(rows, axis=-1) if rows.shape[-1] else zeros(rows.shape[:-1], int)
+
+
+def take_along(rows, index):
+    """The element of each row at an index; NaN of rows without one."""
+    if not rows.shape[-1]:
+        return zeros(rows.shape[:-1], rows.dtype)
+    return take_along_axis(rows, index[..., None], -1)[..., 0]
+
+
+def exact_mean(rows, count):
+    """The mean of each row, as if the rounding of its sum were that of a few operations.
+
+    Beside a power of two that is larger than the sum of magnitudes each number splits into a high part, whose
+    sum is exact, and a small rest.
+    """
+    largest = abs(rows).max(axis=-1, keepdims=True, initial=0.0)
+    power = ldexp(1.0, (frexp(largest)[1] + rows.shape[-1].bit_length()).clip(None, 1023))
+    high = (rows + power) - power
+    total = high.sum(axis=-1) + (rows - high).sum(axis=-1)
+    return where(isfinite(total), total, rows.sum(axis=-1)) / where(count > 0, count, 1)
+
+
+def root_mean_square(rows, count):
+    """The root of the mean square, of any scale: a power of two brings the squares into range."""
+    size = where(isfinite(rows), abs(rows), 0.0).max(axis=-1, keepdims=True, initial=0.0)
+    factor = ldexp(1.0, -frexp(where((size < 2.0**500) & (size > 2.0**-400) | (size == 0.0), 0.5, size))[1])
+    return exact_mean((rows * factor) ** 2, count) ** 0.5 / factor[..., 0]
+
+
+# ---- peaks ------------------------------------------------------------------------------------------
+
+
+def extremum(search, kind, ends, axes, fixed, inputs, slopes, threads):
+    """The peaks of all designs, over axes."""
+    shape = tuple(axis.size for axis in axes.values())
+    size = prod(shape)
+    columns = {name: broadcast_to(value, size) for name, value in fixed.items()}
+    for place, (name, axis) in enumerate(axes.items()):
+        along = axis.reshape([-1 if k == place else 1 for k in range(len(shape))])
+        columns[name] = broadcast_to(along, shape).reshape(-1)
+    require_turning(columns, *ends)
+    designs = array([columns.get(name, zeros(size)) for name in inputs]).reshape(len(inputs), size)
+    nodes = nodes_between(*ends)
+    sine, cosine = empty(nodes.size), empty(nodes.size)
+    sines(nodes, sine, cosine)
+    theta, out = empty(size), empty((1 + max(1, *slopes.values()), size))
+
+    def work(first, last):
+        search(nodes, sine, cosine, kind, designs, first, last, theta, out)
+
+    in_parts(work, size, 1_000 * size, threads)
+    value = abs(out[0]) if kind == 0 else out[0]
+    sign = where(out[0] < 0.0, -1.0, 1.0) if kind == 0 else 1.0
+    found = {"value": value, "theta": theta, "status": where(isfinite(value), 0, 4).astype(int8)}
+    found |= {name: sign * out[row] if row else 0.0 * value for name, row in slopes.items()}
+    return {name: column.reshape(shape) for name, column in found.items()}
 
 
 def require_turning(columns, low, high):
@@ -78,54 +168,14 @@ def require_turning(columns, low, high):
         raise ValueError(f"{design}: it stalls or cannot turn fully, which needs desaxe.peak")
 
 
-TABLES = "void(float64[:, ::1], float64[:, ::1])"
-DESIGNS = 256  # of a block, whose arrays stay in the cache
+def nodes_between(low, high):
+    """The angles at which a search begins, both ends included: denser towards a quarter turn.
 
-
-def by_points(loops, rows, arrays):
-    """Run loops over the points of arrays that broadcast; a row for each result."""
-    shape = broadcast_shapes(*(values.shape for values in arrays))
-    given, out = empty((len(arrays), *shape)), empty((rows, *shape))
-    for row, values in zip(given, arrays, strict=True):
-        row[...] = values
-    compiled(loops, TABLES)(given.reshape(len(arrays), -1), out.reshape(rows, -1))
-    return out if rows > 1 else out[0]
-
-
-def extremum(one, given, threads):
-    """The peaks of all designs: of the scene's axes, with those that are given in their places."""
-    axes = with_axes(one["axes"], given)
-    shape = tuple(axis.size for axis in axes.values())
-    size = prod(shape)
-    columns = {name: empty(size) for name in (*axes, *one["fixed"])}
-    for place, (name, axis) in enumerate(axes.items()):
-        along = axis.reshape([-1 if k == place else 1 for k in range(len(shape))])
-        columns[name][:] = broadcast_to(along, shape).reshape(-1)
-    for name, value in one["fixed"].items():
-        columns[name][:] = value
-    low, high = one["theta"]
-    require_turning(columns, low, high)
-    table = empty((len(one["inputs"]), size))
-    for row, name in zip(table, one["inputs"], strict=True):
-        row[:] = columns[name]
-    margin = (columns["BC"] - columns["AB"] - abs(columns["ec"])) / columns["AB"]
-    nodes = nodes_between(low, high, margin.min())[:, None]
-    theta, out = empty(size), empty((one["rows"], size))
-
-    def curve(angles, own):
-        return by_points(one["curve"], 2, (angles, *own))
-
-    def finish(angles, own):
-        return by_points(one["finish"], one["rows"], (angles, *own))
-
-    def block(start, stop):
-        with errstate(all="ignore"):
-            for first in range(start, stop, DESIGNS):
-                part = slice(first, min(first + DESIGNS, stop))
-                theta[part], out[:, part] = search_block(curve, finish, one["kind"], nodes, table[:, part])
-
-    in_blocks(block, size, 1_000 * size, threads)
-    value = abs(out[0]) if one["kind"] == 0 else out[0]
-    found = {"value": value, "theta": theta, "status": where(isfinite(value), 0, 4).astype(int8)}
-    found |= {name: out[row] if row else 0.0 * value for name, row in one["slopes"].items()}
-    return {name: column.reshape(shape) for name, column in found.items()}
+    There peaks become narrow at a change point, as sinh does for steps of its argument.
+    """
+    least, far = 2.0**-50.5, 1.2
+    near = least * sinh(arcsinh(far / least) * arange(106) / 106)
+    distances = append(near, far + (0.5 * pi - far) * arange(2))
+    quarters = pi * (arange(low // pi - 1.0, high // pi + 2.0) + 0.5)
+    angles = quarters[:, None] + append(distances, -distances)
+    return unique(append(angles[(angles >= low) & (angles <= high)], [low, high]))

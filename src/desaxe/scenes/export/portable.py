@@ -1,6 +1,6 @@
 """A scene as a `Module` that any language can write: numbers folded in, lists and ranges as arguments."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from textwrap import wrap
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -32,7 +32,7 @@ from .motion import has_masses, motion_solver
 from .solvers import solvers
 
 Fixed = tuple[tuple[str, float], ...]
-
+ANY = (1.0, 2.0)  # values of an input that stays open
 
 # In the head of every module: what a status means, and which results it leaves alone.
 _REASONS = ", ".join(f"{one.value} {one.words}" for one in PointStatus)
@@ -50,6 +50,10 @@ class Order(NamedTuple):
     name: str
     command: str
     second_order: bool = False
+    status: bool = False  # whether the status is a result of every module
+    lost: Callable[[Content], list[str]] | None = (
+        None  # what of a scene is left out, where it is not `left_out`
+    )
 
 
 class PortableRequest(NamedTuple):
@@ -82,21 +86,28 @@ class PortableRequest(NamedTuple):
         return with_totals(program, names, lines, self.totals, self.way)
 
 
-def module_of(scene: Scene, order: Order) -> Module:
-    """The module of a scene's outputs; SceneError where it has none."""
+def module_of(scene: Scene, order: Order, more: Sequence[str] = (), opened: Sequence[str] = ()) -> Module:
+    """The module of a scene's outputs; SceneError where it has none.
+
+    more     further results of its Programs, behind the status
+    opened   inputs that its Programs take besides those that the scene leaves open
+    """
     content = scene.content
     require_outputs(scene)
     loads = split(content.inputs)[1]
     require_tables(scene.name or "scene", loads)
-    asked = asked_of(content, (*content.outputs, "status"))
+    results = tuple(dict.fromkeys((*content.outputs, *(["status"] if order.status else []))))
+    wider = content._replace(inputs={**content.inputs, **dict.fromkeys(opened, ANY)})
+    asked = asked_of(wider, (*results, "status", *more))
     fixed, state = asked.fixed, asked.request.form.state
     arguments = [n for n in ORDER if isinstance(content.inputs.get(n), tuple)]
     forms = _forms(asked)
     inputs = tuple(Symbol(n, INPUTS[n].unit, INPUTS[n].meaning) for n in arguments)
-    outputs = tuple(Symbol(*quantity(name, state)) for name in content.outputs)
+    outputs = tuple(Symbol(*quantity(name, state)) for name in results)
     derivatives, values = _derivatives(content, arguments) if order.second_order else ({}, {})
-    head = (*heading(scene, order.command), *_facts(content, asked))
-    own = own_axes(content, content.outputs)
+    lost = (order.lost or left_out)(content)
+    head = (*heading(scene, order.command), *_facts(content, asked, lost))
+    own = own_axes(content, results)
     given = content.inputs | {n: value for n, value in fixed if n in content.inputs}
     moves = None
     if has_masses(given):
@@ -134,7 +145,7 @@ def heading(scene: Scene, command: str) -> tuple[str, ...]:
     )
 
 
-def _facts(content: Content, asked: PortableRequest) -> tuple[str, ...]:
+def _facts(content: Content, asked: PortableRequest, lost: list[str]) -> tuple[str, ...]:
     """Accuracy, frame, what is folded in and what is left out."""
     fixed = {n: value for n, value in asked.fixed if n in INPUTS}
     numbers = [f"{n} = {value!r} {INPUTS[n].unit}".removesuffix(" 1") for n, value in fixed.items()]
@@ -148,7 +159,6 @@ def _facts(content: Content, asked: PortableRequest) -> tuple[str, ...]:
         f"theta turns from +Y towards +X. {motion}; branch {branch:+.0f}.",
     ]
     lines += [f"Folded in: {', '.join(numbers)}."] if numbers else []
-    lost = left_out(content)
     lines += [f"Not in here (`desaxe run` has it): {', '.join(lost)}."] if lost else []
     return ("", *lines, "", *WITHOUT_VALUE)
 
@@ -186,7 +196,7 @@ def _forms(asked: PortableRequest) -> Forms:
     stable = asked.stable(kept)
     guarded = guard_inputs(stable, stable.inputs, LEAST, largest)
     if kept == "extended":
-        return Forms(status, double_double(guarded, double_constants()))
+        return Forms(status, double_double(guarded, double_constants()), rounded=True)
     plain = asked.program(kept, plain=True)
     if plain is None:
         return Forms(status, guarded)

@@ -6,9 +6,10 @@ from ....support.template import filled
 from ...passes.trigonometry import Trigonometry, expand_trigonometry
 from ...passes.value_numbering import value_numbering
 from ...program import Line, Program
+from ..lifted import Lifted, lifted
 from ..protocol import Language, Module, Solver, Symbol
 from ..shared import arrays_of, called, numbers, one_line, with_helpers
-from .functions import Lifted, lifted, static_function
+from .functions import static_function
 from .helpers import CPLUSPLUS, HELPERS, PRAGMAS
 from .steps import HEADER, step_texts
 

@@ -7,8 +7,9 @@ crank turns is held during a step: where it comes to rest, the step is cut, and 
 from collections.abc import Sequence
 
 from ....support.template import file_text, filled
+from ..lifted import lifted
 from ..protocol import Solver
-from .functions import lifted, static_function
+from .functions import static_function
 
 HEADER = file_text(__package__, "motion", "header.h")
 

@@ -1,21 +1,17 @@
-"""numba as a language: functions of one output each, and loop nests."""
+"""numba as a language: modules that people import, with or without a file of helpers beside them."""
 
-from collections.abc import Sequence
+from ..protocol import Language, Module
+from ..shared import documented, refuse_taken, taken_in_python
+from .library import emit_alone
 
-from ...builder import module_text
-from ...program import Program
-from ...text import INDENT, with_short_temporaries, write_lines
-from ..protocol import Language, Module, Symbol
-from ..shared import one_line
-from .module import CALLABLE, emit_numba, numba_parts
-
-SCALAR = '''def scalar(function):
-    """A function of floats for @njit functions, and for Python; compiled at the first call."""
-    try:
-        return njit(cache=True, error_model="numpy")(function)
-    except RuntimeError:  # numba found no folder that it can write to
-        return njit(error_model="numpy")(function)
-'''
+USE = (
+    "It needs NumPy and numba, and nothing of desaxe:",
+    "",
+    "    point(...)      numbers to a tuple of OUTPUTS, also inside of an @njit function",
+    "    evaluate(...)   arrays that broadcast, to a dict of arrays",
+)
+GRID = "    grid(...)       one dimension for each input of one dimension, in the order of the inputs"
+FUNCTION = "    {name}({inputs})   one output as a number, from @njit functions, too"
 
 
 class Numba(Language):
@@ -23,29 +19,14 @@ class Numba(Language):
 
     name = "numba"
     suffix = ".py"
-    about = "FILE.py: `point(...)`, `evaluate(...)`, `run()`; it needs NumPy and numba"
-    loops = staticmethod(emit_numba)
+    about = "FILE.py: `point(...)`, `evaluate(...)`, `grid(...)`, `run()`; it needs NumPy and numba"
+    only_file = True
 
     def files(self, module: Module) -> dict[str, str]:
-        """`name.py`: for each result a function of its own."""
-        scalars = [(one, module.values[one.name], module.taken(one.name)) for one in module.outputs]
-        parts = scalar_parts(scalars)
-        head = "\n".join(map(one_line, module.head))
-        return {f"{module.name}.py": module_text(f"{head}\n", numba_parts(parts, jit=CALLABLE))}
-
-
-def scalar_parts(scalars: Sequence[tuple[Symbol, Program, Sequence[str]]]) -> list[str]:
-    """A function of numbers for each output: its Program, and the inputs that it takes."""
-    return [SCALAR, *(_scalar(*one) for one in scalars)]
-
-
-def _scalar(symbol: Symbol, program: Program, inputs: Sequence[str]) -> str:
-    meaning = symbol.meaning or symbol.name  # a quantity of one's own may come without
-    lines = [
-        f'"""{meaning[0].upper()}{meaning[1:]} [{symbol.unit}]."""',
-        *(f"{given} = float({given})" for given in inputs if given in program.inputs),
-        *write_lines(with_short_temporaries(program), "numba"),
-        f"return {program.outputs[0]}",
-    ]
-    rows = [INDENT + line for line in lines]
-    return "\n".join(["@scalar", f"def {symbol.name}({', '.join(inputs)}):", *rows, ""])
+        """`name.py`."""
+        first = module.outputs[0].name
+        use = [*USE, *([GRID] if module.inputs else []), *module.uses]
+        use.append(FUNCTION.format(name=first, inputs=", ".join(module.taken(first))))
+        text = emit_alone(module, documented(module, use))
+        refuse_taken((symbol.name for symbol in module.outputs), taken_in_python(text))
+        return {f"{module.name}.py": text}

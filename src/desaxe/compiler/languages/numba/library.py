@@ -1,138 +1,217 @@
 """A numba module that people import and keep: `point` of numbers, `evaluate` of arrays, `grid` of axes.
 
 The formulas stand in it once, in straight lines, as functions that are inlined: `plain` where margins are
-wide, `stable` anywhere. Arrays and grids run them over blocks of points, in loops without branches.
+wide, `stable` anywhere, or `formulas` where there is one form. Arrays and grids run them over blocks of
+points, in loops without branches.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
 from textwrap import wrap
-from typing import NamedTuple
 
-from ...builder import HELPERS, Parts, function_text, functions_of, module_text, source_of, words_of
+from ...builder import HELPERS, Parts, function_text, functions_of, module_text, quoted, source_of, words_of
 from ...lowering import Limits, guarded_for_loops
+from ...passes.slicing import keep_outputs
 from ...passes.trigonometry import Trigonometry
-from ...program import Line, Program, renamed
+from ...program import Line, Program
 from ...text import INDENT, WIDTH, with_short_temporaries, write_lines
-from ..shared import types_of
+from ..lifted import Lifted, lifted
+from ..protocol import Module, Symbol
+from ..shared import arrays_of, numbers, one_line
 from .module import IMPORTS, NJIT, SOURCES, numba_parts
 
 HELPER_FILE = "_helpers"
 FRONT = SOURCES / "front.py"
 TEST = "has_wide_margins"
 INLINED = '@njit(error_model="numpy", forceinline=True)\n'
-FORMULAS = {"plain": "The values of a point with wide margins.", "stable": "The values of any point."}
+FORMULAS = {
+    "plain": "The values of a point with wide margins.",
+    "stable": "The values of any point.",
+    "formulas": "The values of a point.",
+}
+MADE = ("near_sin_cos", "sin_cos", "sines")  # functions that are written from a Program, or around one
 
-
-class Library(NamedTuple):
-    """The content of a module.
-
-    head          lines of its docstring ahead of the names
-    what          its results in words
-    stable        the program of the outputs
-    plain         the shorter one, for points that pass the test
-    test          the program of one condition
-    angle         the input of which programs take sine and cosine
-    sines         names of these by operation
-    constants     of the written-out sine and cosine
-    units         of inputs and outputs
-    defaults      input -> the text of its default
-    centres       input -> the input of which it is half by default
-    least         input -> its smallest valid value
-    """
-
-    head: str
-    what: str
-    stable: Program
-    plain: Program
-    test: Program
-    angle: str
-    sines: Mapping[str, str]
-    constants: Trigonometry
-    units: Mapping[str, str]
-    defaults: Mapping[str, str]
-    centres: Mapping[str, str]
-    least: Mapping[str, float]
-
-    @property
-    def inputs(self) -> list[str]:
-        """The inputs that vary from point to point."""
-        return [name for name in self.stable.inputs if name != "branch"]
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """The names of the results."""
-        return self.stable.outputs
+# ---- what modules call ------------------------------------------------------------------------------
 
 
 def emit_helpers(banner: str, constants: Trigonometry) -> str:
-    """The text of the file that all modules call."""
+    """The text of the file that all modules of a folder call."""
     spelled = ["mul_add", "rotated_sin", "two_product_error", "two_sum_error", "rounding", "apart"]
     calls = "".join(f"{name}()\n" for name in spelled)  # asks for their text
-    formulas = numba_parts([_sin_cos(constants), calls])
-    formulas = formulas._replace(texts=tuple(text for text in formulas.texts if text != calls))
+    return module_text(banner, _without(numba_parts([calls]), calls), _front(), _sines(constants))
+
+
+def _front() -> Parts:
     front = source_of(FRONT)
-    texts = tuple(statement.text for statement in front.statements)
     words = frozenset[str]().union(*(statement.words for statement in front.statements))
-    return module_text(
-        banner, formulas, Parts((*texts, _SINES), words | words_of(_SINES), {**IMPORTS, **front.imports})
-    )
+    return Parts(tuple(statement.text for statement in front.statements), words, front.imports)
 
 
-_SINES = (
-    "@compiled\n"
-    + '''def sines(angle, sine, cosine):
-    """The sines and cosines of a block of angles."""
-    apart()
-    for i in range(uint64(angle.size)):
-        sine[i], cosine[i] = sin_cos(angle[i])
-'''
-)
+def _without(parts: Parts, text: str) -> Parts:
+    return parts._replace(texts=tuple(each for each in parts.texts if each != text))
 
 
-def _sin_cos(constants: Trigonometry) -> str:
-    """The function of both for an angle."""
+def _sines(constants: Trigonometry) -> Parts:
+    """The functions of an angle, by polynomials and beyond their reach by libm."""
     lines = (Line("sine", "sin", ("angle",)), Line("cosine", "cos", ("angle",)))
     program = Program(("angle",), lines, ("sine", "cosine"), {})
     guarded = guarded_for_loops(program, ["angle"], Limits({}, {"angle": constants.limit}), constants)
-    body = [
-        '"""Sine and cosine of an angle; NaN beyond what its reduction holds for."""',
-        *_statements(guarded),
+    body = ['"""Sine and cosine by polynomials; NaN beyond what their reduction holds for."""']
+    near = INLINED + function_text("near_sin_cos", ["angle"], [*body, *_statements(guarded)])
+    return numba_parts([near, _SINES.replace("LIMIT", repr(constants.limit))])
+
+
+_SINES = '''@njit(error_model="numpy", forceinline=True)
+def sin_cos(angle):
+    """Sine and cosine of any angle."""
+    if fabs(angle) <= LIMIT:
+        return near_sin_cos(angle)
+    return sin(angle), cos(angle)
+
+
+@compiled
+def sines(angle, sine, cosine):
+    """The sines and cosines of a block of angles."""
+    apart()
+    size, near = uint64(angle.size), uint64(0)
+    for i in range(size):
+        near += uint64(1) if fabs(angle[i]) <= LIMIT else uint64(0)
+        sine[i], cosine[i] = near_sin_cos(angle[i])
+    if near < size:
+        for i in range(size):
+            if not fabs(angle[i]) <= LIMIT:
+                sine[i], cosine[i] = sin(angle[i]), cos(angle[i])
+'''
+
+
+# ---- searches ---------------------------------------------------------------------------------------
+
+
+def grid_text(module: Module, inputs: str) -> str:
+    """The call that computes the outer product of inputs, a dict in the order of dimensions."""
+    writer = _Writer(module)
+    order = "" if module.forms.rounded else ", INPUTS"
+    return f"{writer.grid(inputs)}, 1, None, threads{order})"
+
+
+def search_text(module: Module, name: str, places: Sequence[int]) -> list[str]:
+    """`search_<name>`, which finds the extreme value of a result over the first argument, for many designs.
+
+    places   of the value, its derivative by that argument and further derivatives in what formulas give
+
+    It calls what `peak_steps.py` of the scenes' exports has.
+    """
+    writer = _Writer(module)
+    form = next(reversed(writer.forms))
+    angle, others = module.angle, [name for name in writer.inputs if name != module.angle]
+    design = ", ".join(others)
+    taken = [*writer.inputs, *writer.sines, *writer.branch]
+
+    def values(row: str) -> list[str]:
+        cells = [f"{n}{row}" if n == angle or n in writer.sines else n for n in taken]
+        return _wrapped(f"values = {form}(", cells)
+
+    results = [f"values[{place}]" for place in places]
+    sines = [f"{', '.join(writer.sines)} = sin_cos({angle})"] if writer.sines else []
+    curve = [
+        "apart()",
+        f"for i in range(uint64({angle}.size)):",
+        *_indented(1, values("[i]")),
+        f"    value[i], slope[i] = {results[0]}, {results[1]}",
     ]
-    return INLINED + function_text("sin_cos", ["angle"], body)
-
-
-def _statements(program: Program) -> list[str]:
-    program = with_short_temporaries(program)
-    return [*write_lines(program, "numba"), *_wrapped("return (", program.outputs)]
-
-
-def emit_library(library: Library) -> str:
-    """The text of the module."""
-    own = [
-        _units(library),
-        _kinds(library),
-        _condition(library),
-        _formulas("plain", library.plain, library),
-        _formulas("stable", library.stable, library),
-        _point(library),
-        _block(library),
-        _fill(library),
-        _fill_rows(library),
-        _call("evaluate", "broadcast(fill", "inputs broadcast like NumPy's; numbers give numbers", library),
-        _call(
-            "grid",
-            f'outer(fill_rows, "{library.angle}"',
-            "one dimension for each input of one dimension, in the order of inputs",
-            library,
-        ),
+    point = [*sines, *values(""), *_wrapped("return (", results, ",)" if len(results) == 1 else ")")]
+    parameters = [angle, *writer.sines, *others]
+    given = ["nodes", *(f"{part}_nodes" for part in ("sin", "cos") if writer.sines), *others]
+    texts = [
+        NJIT + function_text(f"curve_{name}", [*parameters, "value", "slope"], curve),
+        NJIT + function_text(f"at_{name}", [angle, *others], point),
     ]
-    helpers = dict.fromkeys([*functions_of(FRONT), *functions_of(HELPERS), *_MADE], f".{HELPER_FILE}")
+    rows = [f"{n} = designs[{k}, i]" for k, n in enumerate(others)]
+    search = _SEARCH.replace("@NAME@", name).replace("@DESIGN@", f", {design}" if design else "")
+    search = search.replace("@CURVE@", ", ".join(given)).replace(
+        "        @ROWS@\n", "".join(f"        {row}\n" for row in rows)
+    )
+    return [*texts, search]
+
+
+_SEARCH = '''@compiled
+def search_@NAME@(nodes, sin_nodes, cos_nodes, kind, designs, first, last, theta, out):
+    """The extreme value of each design: its angle; value, slope and derivatives there."""
+    value, slope = empty(nodes.size), empty(nodes.size)
+    for i in range(first, last):
+        @ROWS@
+        curve_@NAME@(@CURVE@, value, slope)
+        best, theta[i], at_node = -inf, nan, True
+        for j in range(nodes.size):
+            if score(kind, value[j]) > best:
+                best, theta[i] = score(kind, value[j]), nodes[j]
+        for j in range(nodes.size - 1):
+            width = nodes[j + 1] - nodes[j]
+            if not may_hold(kind, best, width, value[j], value[j + 1], slope[j], slope[j + 1]):
+                continue
+            end, before = nodes[j], slope[j]
+            for part in range(4):
+                low, high, after = end, nodes[j + 1], slope[j + 1]
+                if part < 3:
+                    high = nodes[j] + inside(part, slope[j], slope[j + 1]) * width
+                    after = at_@NAME@(high@DESIGN@)[1]
+                end, rises = high, before > 0.0
+                changes = rises != (after > 0.0) and before == before and after == after
+                last_x, last_slope, x, here, size = low, before, high, after, high - low
+                before = after
+                for step in range(100 if changes else 0):
+                    new = next_guess(low, high, x, here, last_x, last_slope, size)
+                    last_x, last_slope, size, x = x, here, abs(new - x), new
+                    here = at_@NAME@(x@DESIGN@)[1]
+                    if (here > 0.0) == rises:
+                        low = x
+                    else:
+                        high = x
+                    if here == 0.0 or size <= 4e-16 * abs(x) or high - low <= 4e-16 * abs(x):
+                        break
+                if changes:
+                    new = score(kind, at_@NAME@(x@DESIGN@)[0])
+                    if new > best + 1e-14 * abs(best) or (at_node and new >= best - 1e-14 * abs(best)):
+                        best, theta[i], at_node = max(new, best), x, False
+        values = at_@NAME@(theta[i]@DESIGN@)
+        for k in range(out.shape[0]):
+            out[k, i] = values[k]
+'''
+
+
+# ---- a module ---------------------------------------------------------------------------------------
+
+
+def emit_in_folder(module: Module, docstring: str) -> str:
+    """The text of a module beside the file of helpers."""
+    own = _Writer(module).parts()
+    helpers = dict.fromkeys(
+        [*functions_of(FRONT), *functions_of(HELPERS), *MADE, *_SPELLED], f".{HELPER_FILE}"
+    )
     imports = IMPORTS | {"BLOCK": f".{HELPER_FILE}"} | helpers
-    words = frozenset[str]().union(*map(words_of, own))
-    return module_text(library.head, Parts(tuple(own), words, imports))
+    return module_text(docstring, own._replace(imports=imports))
 
 
-_MADE = ("sines", "sin_cos", "apart", "mul_add", "rotated_sin", "rotated_cos", "two_product_error")
+def emit_alone(module: Module, docstring: str) -> str:
+    """The text of a module that needs no other file."""
+    own = _Writer(module).parts()
+    texts = list(own.texts) + (list(module.more.texts) if module.more else [])
+    called = numba_parts([*_sines(module.constants).texts, *_front().texts, *texts])
+    return module_text(
+        docstring,
+        _front(),
+        called._replace(texts=tuple(t for t in called.texts if t not in texts)),
+        own,
+        *([module.more] if module.more else []),
+    )
+
+
+_SPELLED = ("apart", "mul_add", "rotated_sin", "rotated_cos", "two_product_error")
+
+
+def _statements(program: Program, several: bool = True) -> list[str]:
+    program = with_short_temporaries(program)
+    last = "," if several and len(program.outputs) == 1 else ""
+    return [*write_lines(program, "numba"), *_wrapped("return (", program.outputs, f"{last})")]
 
 
 def _mapping(name: str, rows: Mapping[str, str]) -> str:
@@ -141,164 +220,277 @@ def _mapping(name: str, rows: Mapping[str, str]) -> str:
     return "\n".join([f"{name} = {{", *(INDENT + row for row in wrap(f"{text},", WIDTH)), "}", ""])
 
 
-def _units(library: Library) -> str:
-    return _mapping("UNITS", {n: f'"{library.units[n]}"' for n in (*library.inputs, *library.outputs)})
-
-
-def _kinds(library: Library) -> str:
-    types = types_of(library.stable)
-    return _mapping("OUTPUTS", {n: "int8" if types[n] == "i64" else "float64" for n in library.outputs})
-
-
 def _wrapped(head: str, arguments: Iterable[str], tail: str = ")") -> list[str]:
     """A statement with arguments in parentheses, on one line or wrapped."""
     text = ", ".join(arguments)
     if len(head) + len(text) + len(tail) <= WIDTH:
         return [head + text + tail]
     rows = [INDENT + row for row in wrap(f"{text},", WIDTH, break_long_words=False)]
-    return [head, *rows, tail] if head else ["(", *rows, f"){tail}"]
-
-
-def _condition(library: Library) -> str:
-    body = ['"""Whether the shorter formulas hold for a design."""', *_statements(library.test)]
-    return INLINED + function_text(TEST, library.test.inputs, body)
-
-
-def _parameters(library: Library) -> list[str]:
-    """The parameters of the formulas."""
-    names = [name for name in library.stable.inputs if name != "branch"]
-    branch = [name for name in library.stable.inputs if name == "branch"]
-    return [*names, *library.sines.values(), *branch]
-
-
-def _formulas(name: str, program: Program, library: Library) -> str:
-    """One form of the formulas as a function."""
-    sines = with_given_sines(program, library.sines)
-    # A design that passes the test has lengths that are good.
-    checked = [n for n in library.inputs if name == "stable" or n not in library.test.inputs]
-    limits = Limits(library.least, {library.angle: library.constants.limit})
-    guarded = guarded_for_loops(sines, checked, limits, None)
-    body = [f'"""{FORMULAS[name]}"""', *_statements(guarded)]
-    return INLINED + function_text(name, _parameters(library), body)
-
-
-def with_given_sines(program: Program, sines: Mapping[str, str]) -> Program:
-    """The program with sine and cosine of its angle as inputs.
-
-    Precondition: it has no other calls of them.
-    """
-    calls = {line.name: sines[line.op] for line in program.lines if line.op in sines}
-    lines = tuple(line for line in program.lines if line.name not in calls)
-    notes = {name: note for name, note in program.notes.items() if name not in calls}
-    inputs = (*program.inputs, *sines.values())
-    return renamed(program._replace(inputs=inputs, lines=lines, notes=notes), calls)
-
-
-def _signature(library: Library) -> list[str]:
-    """The parameters that people give."""
-    defaults = {**library.defaults, **dict.fromkeys(library.centres, "None")}
-    names = [f"{n}={defaults[n]}" if n in defaults else n for n in library.inputs]
-    return [*names, *(["branch=1.0"] if "branch" in library.stable.inputs else [])]
-
-
-def _centres(library: Library) -> list[str]:
-    """The lines that put centres of mass halfway along their links."""
-    return [
-        f"{name}_taken = 0.5 * {link} if {name} is None else {name}" for name, link in library.centres.items()
-    ]
-
-
-def _taken(name: str, library: Library) -> str:
-    return f"{name}_taken" if name in library.centres else name
-
-
-def _point(library: Library) -> str:
-    """The function of numbers."""
-    values = [_taken(name, library) for name in _parameters(library)]
-    body = [
-        f'"""{library.what[0].upper()}{library.what[1:]} at a point, for your own @njit functions, too."""',
-        *_centres(library),
-        f"{', '.join(library.sines.values())} = sin_cos({library.angle})",
-        f"if {TEST}({', '.join(library.test.inputs)}):",
-        *(INDENT + row for row in _wrapped("return plain(", values)),
-        *_wrapped("return stable(", values),
-    ]
-    return "@compiled\n" + function_text("point", _signature(library), body)
-
-
-def _block(library: Library) -> str:
-    """The loops over a block of points, each input an array or a number."""
-    names = _parameters(library)
-    values = [name if name == "branch" else f"value_at({name}, i)" for name in names]
-    targets = [f"{name}_out[i]" for name in library.outputs]
-    test = f"{TEST}({', '.join(f'value_at({name}, i)' for name in library.test.inputs)})"
-    loop = "for i in range(size):"
-    rows = [
-        '"""Fill the outputs of a block: `plain` first, then `stable` where that does not hold."""',
-        "apart()",
-        f"size, wide = uint64({library.outputs[0]}_out.size), uint64(0)",
-        loop,
-        f"    wide += uint64(1) if {test} else uint64(0)",
-        *_indented(1, [*_wrapped("values = plain(", values), *_wrapped("", targets, " = values")]),
-        "if wide < size:",
-        f"    {loop}",
-        *_indented(2, [*_wrapped("before = (", targets), *_wrapped("values = stable(", values)]),
-        f"        values = before if {test} else values",
-        *_indented(2, _wrapped("", targets, " = values")),
-    ]
-    return NJIT + function_text("block", [*names, *(f"{name}_out" for name in library.outputs)], rows)
+    return [head, *rows, tail.lstrip(",")] if head else ["(", *rows, f"){tail}"]
 
 
 def _indented(depth: int, rows: Iterable[str]) -> list[str]:
     return [INDENT * depth + row for row in rows]
 
 
-def _fill(library: Library) -> str:
-    """Blocks of columns."""
-    count = len(library.inputs)
-    parts = [f"part_of(columns[{k}], buffers[{k}], start, size)" for k in range(count)]
-    sines = [f"buffers[{count + k}, :size]" for k in range(len(library.sines))]
-    rows = [
-        '"""Fill the outputs of points; a column of one number is that of all points."""',
-        f"buffers = empty(({count + len(library.sines)}, BLOCK))",
-        "hold(columns, buffers)",
-        "for start in range(0, length, BLOCK):",
-        "    stop = min(start + BLOCK, length)",
-        "    size = stop - start",
-        f"    sines({', '.join([parts[library.inputs.index(library.angle)], *sines])})",
-        *_indented(1, _block_call(library, [*parts, *sines])),
-    ]
-    return "@compiled\n" + function_text("fill", ["columns", "length", "branch", "targets"], rows)
+class _Writer:
+    """Writes the parts of a module."""
 
+    def __init__(self, module: Module) -> None:
+        self.module = module
+        forms = module.forms
+        self.names = [symbol.name for symbol in module.inputs]  # that people give
+        self.inputs = [*self.names, *module.fixed]  # of the formulas
+        chosen = [k for k in range(len(forms.stable.outputs)) if k != forms.status or k < self.count]
+        programs = {"plain": forms.plain if forms.test else None, "stable": forms.stable}
+        self.forms: dict[str, Lifted] = {}
+        for name, program in programs.items():
+            if program is not None:
+                short = keep_outputs(program, [program.outputs[k] for k in chosen])
+                self.forms[name] = lifted(short, [module.angle])
+        self.test = forms.test if len(self.forms) == 2 else None
+        if self.test is None:
+            self.forms = {"formulas": self.forms["stable"]}
+        self.turns = {k: v for form in self.forms.values() for k, v in form.turns.items()}
+        self.sines = [name for pair in self.turns.values() for name in pair]
+        self.branch = ["branch"] if "branch" in forms.stable.inputs else []
 
-def _fill_rows(library: Library) -> str:
-    """Rows of a grid, along which the columns vary that are arrays."""
-    parts = [f"row_part(columns[{k}], row)" for k in range(len(library.inputs) + len(library.sines))]
-    rows = [
-        '"""Fill rows of a grid; a column is an array along the row, or numbers of rows with a period."""',
-        "for row in range(rows):",
-        "    start, stop = row * length, (row + 1) * length",
-        *_indented(1, _block_call(library, parts)),
-    ]
-    return "@compiled\n" + function_text(
-        "fill_rows", ["columns", "rows", "length", "branch", "targets"], rows
-    )
+    @property
+    def count(self) -> int:
+        """The number of results; what the formulas give besides is for other functions."""
+        return len(self.module.outputs)
 
+    @property
+    def open_angle(self) -> str | None:
+        """The argument that people give of which sine and cosine are taken."""
+        return next((angle for angle in self.turns if angle in self.names), None)
 
-def _block_call(library: Library, parts: Sequence[str]) -> list[str]:
-    branch = ["branch"] if "branch" in library.stable.inputs else []
-    targets = [f"targets[{k}][start:stop]" for k in range(len(library.outputs))]
-    return _wrapped("block(", [*parts, *branch, *targets])
+    def parts(self) -> Parts:
+        """All parts."""
+        module = self.module
+        texts = [
+            f"INPUTS = {quoted(tuple(self.names))}\n",
+            _mapping("UNITS", {s.name: f'"{s.unit}"' for s in (*module.inputs, *module.outputs)}),
+            _mapping("OUTPUTS", {s.name: self.kind(k) for k, s in enumerate(module.outputs)}),
+            *self.tables(),
+            *([self.condition()] if self.test else []),
+            *(self.formulas(name, form) for name, form in self.forms.items()),
+            self.point(),
+            *(self.function(k, symbol) for k, symbol in enumerate(module.outputs) if module.functions),
+            *self.arrays(),
+        ]
+        words = frozenset[str]().union(*map(words_of, texts))
+        return Parts(tuple(texts), words, IMPORTS | {"array": "numpy"})
 
+    def kind(self, place: int) -> str:
+        """The type of an output."""
+        return "int8" if place == self.module.forms.status else "float64"
 
-def _call(name: str, road: str, what: str, library: Library) -> str:
-    """A function of arrays."""
-    inputs = [f'"{n}": {_taken(n, library)}' for n in library.inputs]
-    branch = "branch" if "branch" in library.stable.inputs else "1"
-    body = [
-        f'"""{library.what[0].upper()}{library.what[1:]} by name: {what}."""',
-        *_centres(library),
-        *_wrapped("inputs = {", inputs, "}"),
-        f"return {road}, OUTPUTS, inputs, {branch}, out)",
-    ]
-    return function_text(name, [*_signature(library), "out=None"], body)
+    def tables(self) -> list[str]:
+        """The tables that are looked into."""
+        return [
+            "\n".join([f"{name} = array([", *_indented(1, numbers(column)), "])", ""])
+            for name, column in arrays_of(self.module.tables).items()
+        ]
+
+    # -- one point --
+
+    def condition(self) -> str:
+        """The test of a design."""
+        assert self.test is not None
+        body = ['"""Whether the shorter formulas hold for a design."""', *_statements(self.test, False)]
+        return INLINED + function_text(TEST, self.test.inputs, body)
+
+    def formulas(self, name: str, form: Lifted) -> str:
+        """One form of the formulas as a function."""
+        program = form.program
+        if not self.module.forms.rounded:
+            program = guarded_for_loops(program, (), Limits({}), None)
+        body = [f'"""{FORMULAS[name]}"""', *_statements(program)]
+        return INLINED + function_text(name, [*self.inputs, *self.sines, *self.branch], body)
+
+    def signature(self) -> list[str]:
+        """The parameters that people give."""
+        defaults = {**self.module.defaults, **dict.fromkeys(self.module.centres, "None")}
+        names = [f"{n}={defaults[n]}" if n in defaults else n for n in self.names]
+        return [*names, *(f"{name}=1.0" for name in self.branch)]
+
+    def centres(self) -> list[str]:
+        """The lines that put centres of mass halfway along their links."""
+        return [
+            f"{name}_taken = 0.5 * {link} if {name} is None else {name}"
+            for name, link in self.module.centres.items()
+        ]
+
+    def value(self, name: str) -> str:
+        """What stands for an input of the formulas."""
+        if name in self.module.fixed:
+            return repr(self.module.fixed[name])
+        return f"{name}_taken" if name in self.module.centres else name
+
+    @property
+    def what(self) -> str:
+        """The results in words, at the start of a sentence."""
+        return self.module.what[0].upper() + self.module.what[1:]
+
+    def point(self) -> str:
+        """The function of numbers."""
+        values = [self.value(n) for n in (*self.inputs, *self.sines, *self.branch)]
+        body = [f'"""{self.what} at a point, for your own @njit functions, too."""', *self.centres()]
+        body += [f"{', '.join(pair)} = sin_cos({self.value(a)})" for a, pair in self.turns.items()]
+        if self.test:
+            body.append(f"if {TEST}({', '.join(map(self.value, self.test.inputs))}):")
+        for depth, name in zip((1, 0) if self.test else (0,), self.forms, strict=True):
+            body += _indented(depth, self.returned(name, values))
+        return "@compiled\n" + function_text("point", self.signature(), body)
+
+    def returned(self, name: str, values: Sequence[str]) -> list[str]:
+        """The lines that return the results of a form."""
+        if self.count == len(self.forms[name].program.outputs):
+            return _wrapped(f"return {name}(", values)
+        results = [f"values[{k}]" for k in range(self.count)]
+        return [*_wrapped(f"values = {name}(", values), *_wrapped("return (", results, ",)")]
+
+    def function(self, place: int, symbol: Symbol) -> str:
+        """The function of one output."""
+        taken = self.module.taken(symbol.name)
+        meaning = one_line(symbol.meaning or symbol.name)  # a quantity of a user may come without
+        given = ", ".join(name if name in taken else "nan" for name in self.names)
+        body = [
+            f'"""{meaning[0].upper()}{meaning[1:]} [{symbol.unit}]."""',
+            f"return point({given})[{place}]",
+        ]
+        return "@compiled\n" + function_text(symbol.name, taken, body)
+
+    # -- arrays --
+
+    def arrays(self) -> list[str]:
+        """The functions of arrays."""
+        if not self.names:
+            return ['def evaluate():\n    """The values; every input is fixed."""\n'
+                    "    return dict(zip(OUTPUTS, point(), strict=True))\n"]  # fmt: skip
+        broadcasts = "inputs broadcast like NumPy's; numbers give numbers"
+        dimensions = "one dimension for each input of one dimension, in the order of inputs"
+        return [
+            self.block(),
+            self.fill(),
+            *([] if self.module.forms.rounded else [self.fill_rows()]),
+            self.call("evaluate", "broadcast(fill, OUTPUTS, inputs", broadcasts),
+            self.call("grid", self.grid("inputs"), dimensions),
+        ]
+
+    def grid(self, inputs: str) -> str:
+        """The start of the call that computes the outer product of some inputs.
+
+        With twice the digits, whose lines LLVM would duplicate for what is the same along a row, as points.
+        """
+        if self.module.forms.rounded:
+            return f"broadcast(fill, OUTPUTS, meshed({inputs}, INPUTS)"
+        return f"outer(fill_rows, {quoted(self.open_angle)}, OUTPUTS, {inputs}"
+
+    def part(self, name: str) -> str:
+        """The value of an input of the formulas at a point of a block."""
+        fixed = name in self.module.fixed or name in self.branch
+        return self.value(name) if fixed else f"value_at({name}, i)"
+
+    def block(self) -> str:
+        """The loops over a block of points, each input an array or a number."""
+        values = [self.part(name) for name in (*self.inputs, *self.sines, *self.branch)]
+        outs = [f"{symbol.name}_out" for symbol in self.module.outputs]
+        targets = [f"{out}[i]" for out in outs]
+        loop = "for i in range(size):"
+        first, *other = self.forms
+        results = [f"values[{k}]" for k in range(self.count)]
+        whole = 1 < self.count == len(self.forms[first].program.outputs)
+        store = (
+            _wrapped("", targets, " = values")
+            if whole
+            else [f"{t} = {r}" for t, r in zip(targets, results, strict=True)]
+        )
+        run = [*_wrapped(f"values = {first}(", values), *store]
+        rows = ["apart()", f"size = uint64({outs[0]}.size)"]
+        if not other:
+            rows = ['"""Fill the outputs of a block."""', *rows, loop, *_indented(1, run)]
+        else:
+            test = f"{TEST}({', '.join(map(self.part, self.test.inputs if self.test else ()))})"
+            again = [
+                *_wrapped(f"values = {other[0]}(", values),
+                *(f"{t} = {t} if wide else {r}" for t, r in zip(targets, results, strict=True)),
+            ]
+            rows = [
+                '"""Fill the outputs of a block: `plain` first, then `stable` where that does not hold."""',
+                *rows,
+                "count = uint64(0)",
+                loop,
+                f"    count += uint64(1) if {test} else uint64(0)",
+                *_indented(1, run),
+                "if count < size:",
+                f"    {loop}",
+                f"        wide = {test}",
+                *_indented(2, again),
+            ]
+        names = [n for n in (*self.names, *self.sines, *self.branch) if n not in self.module.fixed]
+        return NJIT + function_text("block", [*names, *outs], rows)
+
+    def columns(self) -> int:
+        """The number of arrays that a block reads."""
+        return len(self.names) + len(self.sines)
+
+    def fill(self) -> str:
+        """Blocks of columns."""
+        count = len(self.names)
+        parts = [f"part_of(columns[{k}], buffers[{k}], start, size)" for k in range(count)]
+        sines = [f"buffers[{count + k}, :size]" for k in range(len(self.sines))]
+        rows = [
+            '"""Fill the outputs of points; a column of one number is that of all points."""',
+            f"buffers = empty(({self.columns()}, BLOCK))",
+            "hold(columns, buffers)",
+            *self.fixed_sines(),
+            "for start in range(first, last, BLOCK):",
+            "    stop = min(start + BLOCK, last)",
+            "    size = stop - start",
+        ]
+        if self.open_angle:
+            rows.append(f"    sines({', '.join([parts[self.names.index(self.open_angle)], *sines])})")
+        else:
+            sines = self.sines
+        rows += _indented(1, self.block_call([*parts, *sines]))
+        return "@compiled\n" + function_text("fill", ["columns", "first", "last", "branch", "targets"], rows)
+
+    def fixed_sines(self) -> list[str]:
+        """The line that takes sine and cosine of an angle that is fixed."""
+        fixed = {angle: pair for angle, pair in self.turns.items() if angle in self.module.fixed}
+        return [f"{', '.join(pair)} = sin_cos({self.value(angle)})" for angle, pair in fixed.items()]
+
+    def fill_rows(self) -> str:
+        """Rows of a grid, along which the columns vary that are arrays."""
+        count = self.columns() if self.open_angle else len(self.names)
+        parts = [f"row_part(columns[{k}], row)" for k in range(count)]
+        parts += [] if self.open_angle else self.sines
+        rows = [
+            '"""Fill rows of a grid: a column is an array along a row, or numbers of rows with a period."""',
+            *self.fixed_sines(),
+            "for row in range(first, last):",
+            "    start, stop = row * length, (row + 1) * length",
+            *_indented(1, self.block_call(parts)),
+        ]
+        return "@compiled\n" + function_text(
+            "fill_rows", ["columns", "first", "last", "length", "branch", "targets"], rows
+        )
+
+    def block_call(self, parts: Sequence[str]) -> list[str]:
+        """The call that fills a part of the targets."""
+        targets = [f"targets[{k}][start:stop]" for k in range(self.count)]
+        return _wrapped("block(", [*parts, *self.branch, *targets])
+
+    def call(self, name: str, road: str, what: str) -> str:
+        """A function of arrays."""
+        inputs = [f'"{n}": {self.value(n)}' for n in self.names]
+        branch = "branch" if self.branch else "1"
+        body = [
+            f'"""{self.what} by name: {what}."""',
+            *self.centres(),
+            *_wrapped("inputs = {", inputs, "}"),
+            f"return {road}, {branch}, out, threads)",
+        ]
+        return function_text(name, [*self.signature(), "out=None", "threads=None"], body)

@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 
-from ....compiler.languages.c.functions import lifted, static_function
+from ....compiler.languages.c.functions import static_function
 from ....compiler.languages.c.helpers import HELPERS, PRAGMAS
 from ....compiler.languages.c.language import comment, quoted, sine_and_cosine
+from ....compiler.languages.lifted import lifted
 from ....compiler.languages.shared import with_helpers
 from ....compiler.program import Program
 from ....mechanism.constants import constants

@@ -1,6 +1,8 @@
-"""Loops over blocks of points and rows of a grid, and functions of arrays, for modules that people import."""
+"""Blocks of points, rows of a grid and functions of arrays, for modules that people import."""
 
+from concurrent.futures import ThreadPoolExecutor
 from math import prod
+from os import cpu_count
 from typing import TYPE_CHECKING
 
 from numba import njit, types
@@ -94,12 +96,22 @@ def outputs_of(kinds, shape, out):
             and target.shape == shape
             and can_cast(kind, target.dtype, "same_kind")
         ):
-            raise ValueError(f"out= for {name}: expected an array of {kind.__name__} of the shape {shape}")
+            raise ValueError(f"out= for {name}: expected {kind.__name__} of the shape {shape}")
     return {name: out[name] for name in kinds}
 
 
-def run(fill, sizes, columns, branch, kinds, targets):
-    """The targets, filled by compiled loops."""
+def in_parts(work, count, points, threads):
+    """Call work(first, last) for parts of a range, on as many threads as pay."""
+    number = max(1, min(threads or cpu_count() or 1, points // 20_000, count))
+    if number == 1:
+        return work(0, count)
+    edges = [count * k // number for k in range(number + 1)]
+    with ThreadPoolExecutor(number) as pool:
+        list(pool.map(work, edges[:-1], edges[1:]))
+
+
+def filled(fill, sizes, columns, branch, kinds, targets, threads):
+    """The targets, filled by compiled loops; the first of `sizes` is shared by threads."""
     if branch not in (1, -1):
         raise ValueError(f"branch = {branch}: it is +1 or -1")
     flat = {
@@ -108,15 +120,20 @@ def run(fill, sizes, columns, branch, kinds, targets):
         else empty(target.size, kinds[name])
         for name, target in targets.items()
     }
+    arrays = tuple(flat.values())
+
+    def work(first, last):
+        fill(columns, first, last, *sizes[1:], float(branch), arrays)
+
     if prod(sizes):
-        fill(columns, *sizes, float(branch), tuple(flat.values()))
+        in_parts(work, sizes[0], prod(sizes), threads)
     for name, target in targets.items():
         if flat[name].base is not target and flat[name] is not target:
             copyto(target, flat[name].reshape(target.shape), casting="same_kind")
     return targets
 
 
-def broadcast(fill, kinds, inputs, branch, out):
+def broadcast(fill, kinds, inputs, branch, out, threads):
     """Fill outputs of the shape that all inputs broadcast to; those of numbers alone are numbers."""
     columns = [column_of(name, value) for name, value in inputs.items()]
     shape = broadcast_shapes(*(column.shape for column in columns))
@@ -124,26 +141,42 @@ def broadcast(fill, kinds, inputs, branch, out):
         c.reshape(-1) if c.size == 1 or c.shape == shape else broadcast_to(c, shape).flatten()
         for c in columns
     ]
-    targets = run(fill, (prod(shape),), tuple(flat), branch, kinds, outputs_of(kinds, shape, out))
+    targets = outputs_of(kinds, shape, out)
+    filled(fill, (prod(shape),), tuple(flat), branch, kinds, targets, threads)
     return targets if out is not None or shape else {name: target[()] for name, target in targets.items()}
 
 
-def outer(fill, angle, kinds, inputs, branch, out):
-    """Fill outputs of one dimension for each input of one dimension, in the order of the inputs."""
+def meshed(inputs, order=None):
+    """The inputs of a grid, each of one dimension along its own; `order` is that in which they come."""
     columns = {name: column_of(name, value) for name, value in inputs.items()}
     for name, column in columns.items():
         if column.ndim > 1:
             raise ValueError(f"{name}: a grid takes numbers and arrays of one dimension, got {column.ndim}")
-    shape = tuple(column.size for column in columns.values() if column.ndim)
-    rows, length = prod(shape[:-1]), shape[-1] if shape else 1
-    sine, cosine = empty(columns[angle].shape), empty(columns[angle].shape)
-    sines(columns[angle].reshape(-1), sine.reshape(-1), cosine.reshape(-1))
-    periods, period, left = {}, max(rows, 1), len(shape)
+    left = sum(column.ndim for column in columns.values())
     for name, column in columns.items():
         left -= column.ndim
+        columns[name] = column.reshape((-1,) + (1,) * left) if column.ndim else column
+    return {name: columns[name] for name in order or columns}
+
+
+def outer(fill, angle, kinds, inputs, branch, out, threads, order=None):
+    """Fill outputs of one dimension for each input of one dimension, in the order of the inputs.
+
+    `order` is that in which `fill` takes them; behind it come sine and cosine of the angle, if there is one.
+    """
+    columns = meshed(inputs)
+    shape = tuple(column.size for column in columns.values() if column.ndim)
+    rows, length = prod(shape[:-1]), shape[-1] if shape else 1
+    periods, period, left = {}, max(rows, 1), len(shape)
+    for name, column in columns.items():
+        left -= column.ndim > 0
         period = period // max(column.size, 1) if column.ndim and left else period
         periods[name] = 0 if column.ndim and not left else period if column.ndim else 1
-    columns |= {"sine": sine, "cosine": cosine}
-    periods |= dict.fromkeys(("sine", "cosine"), periods[angle])
-    parts = [c if not periods[n] else (c.reshape(-1), periods[n]) for n, c in columns.items()]
-    return run(fill, (rows, length), tuple(parts), branch, kinds, outputs_of(kinds, shape, out))
+    names = [*(order or columns)]
+    if angle is not None:
+        names += ["sine", "cosine"]
+        columns |= {name: empty(columns[angle].shape) for name in ("sine", "cosine")}
+        sines(*(columns[name].reshape(-1) for name in (angle, "sine", "cosine")))
+        periods |= dict.fromkeys(("sine", "cosine"), periods[angle])
+    parts = [columns[n] if not periods[n] else (columns[n].reshape(-1), periods[n]) for n in names]
+    return filled(fill, (rows, length), tuple(parts), branch, kinds, outputs_of(kinds, shape, out), threads)
