@@ -17,7 +17,7 @@ import sympy
 from desaxe import compiler
 from desaxe.compiler.builder import module_text, with_sources
 from desaxe.compiler.cost import cost_of
-from desaxe.compiler.languages.numba.library import HELPER_FILE, emit_helpers, emit_in_folder
+from desaxe.compiler.languages.numba.library import HELPER_FILE, emit_folder
 from desaxe.compiler.languages.protocol import Forms, Module, Symbol
 from desaxe.compiler.passes.bind import assume
 from desaxe.compiler.passes.double_angles import DoubleTrigonometry
@@ -75,11 +75,10 @@ def render(derivation: Derivation) -> dict[str, str]:
         "centres.py": _program(derivation.centres, "centres", _CENTRES, digest),
         "index.py": _index(derivation, digest),
         "trigonometry.py": _trigonometry(derivation, digest),
-        f"{HELPER_FILE}.py": emit_helpers(_banner(_HELPERS, digest), derivation.trigonometry),
     }
-    for group in GROUPS:
-        files[f"{group.name}.py"] = _group(derivation, group, digest)
-    return files
+    modules = {group.name: _group(derivation, group, digest) for group in GROUPS}
+    kernels = emit_folder(modules, _banner(_HELPERS, digest), derivation.trigonometry)
+    return files | {f"{name}.py": text for name, text in kernels.items()}
 
 
 _HELPERS = (
@@ -178,8 +177,8 @@ def _trigonometry(derivation: Derivation, digest: str) -> str:
     return f'"""{_banner(what, digest)}"""\n\n' + "\n".join(texts)
 
 
-def _group(derivation: Derivation, group: Group, digest: str) -> str:
-    """A module of kernels."""
+def _group(derivation: Derivation, group: Group, digest: str) -> tuple[Module, str]:
+    """A module of kernels, and its docstring."""
     stable, plain = (
         optimise(assume(_cut(derivation.program, group.outputs), {"wide_margins": wide}), dict(group.fixed))
         for wide in (False, True)
@@ -207,7 +206,7 @@ def _group(derivation: Derivation, group: Group, digest: str) -> str:
         centres=centres,
         functions=False,
     )
-    return emit_in_folder(module, _head(derivation, group, stable, plain, digest))
+    return module, _head(derivation, group, stable, plain, digest)
 
 
 def _head(derivation: Derivation, group: Group, stable: Program, plain: Program, digest: str) -> str:

@@ -1,23 +1,23 @@
 """`desaxe derive --quantities`: a package of a user's own quantities that needs nothing of desaxe.
 
-Like generated/ it has a frozen program as text, an index, and kernels cut from it: for each quantity its
-value, its first and its second sensitivities, each under paper A's law and for a given state, as a numba
-module for arrays and as plain Python for a single point. The files say from which definitions they were made.
+Like generated/ it has a frozen program as text, an index, and numba modules cut from it: for each quantity
+its value, first and second sensitivities, each under paper A's law and for a given state. The files say
+from which definitions they were made.
 """
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from keyword import iskeyword
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...compiler.builder import module_text, with_sources
-from ...compiler.languages.numba.module import emit_numba
-from ...compiler.languages.python import emit_python
+from ...compiler.languages.numba.library import emit_folder
+from ...compiler.languages.protocol import Forms, Module, Symbol
 from ...compiler.languages.shared import one_line
 from ...compiler.languages.words import words_of
-from ...compiler.lowering import Limits, guarded_for_loops, nest
+from ...compiler.passes.guard import guard_inputs
 from ...compiler.program import Program, renamed
 from ...compiler.text import write_function
 from ...definitions.tables import read_definitions, tables_of
@@ -87,21 +87,22 @@ def package_texts(source: Path, name: str) -> dict[str, str | None]:
         listing += _parts(own, known)
     texts = {"index.py": _index(banner, table), "program.py": _program(banner, tuple(table), made)}
     where: dict[str, dict[str, Any]] = {}
+    modules = {}
     for part in listing:
         program, shown = _part_program(part, made)
-        texts[f"{part.file}.py"] = _kernel(banner, part, program)
-        texts[f"{part.file}_point.py"] = emit_python(program, banner)
+        modules[part.file] = _module(part, program, shown, table), f"{part.file}.\n\n{banner}\n"
         where[part.file] = {
             "names": shown, "inputs": program.inputs, "needs": _needs(part, made), "state": part.state,
         }  # fmt: skip
+    kernels = emit_folder(modules, f"What the modules call.\n\n{banner}\n", constants())
+    texts |= {f"{name}.py": text for name, text in kernels.items()}
     front = filled(
-        file_text(__package__, "texts", "package.txt"),
+        file_text(__package__, "package.txt"),
         BANNER=banner,
         DIGEST=repr(mark),
         PARTS=_literal(where),
         LEAST=repr({n: LEAST[n] for n in LEAST}),
         LIMITS=repr({n: row.limit for n, row in INPUTS.items()}),
-        REACH=repr(constants().limit),
     )
     return {name: sealed(text) for name, text in {"__init__.py": front, **texts}.items()}
 
@@ -147,12 +148,23 @@ def _needs(part: PackagedFile, made: Sequence[Definition]) -> tuple[str, ...]:
     return specialise(part.names, Variant(part.state, own=tuple(made)), ()).inputs
 
 
-def _kernel(banner: str, part: PackagedFile, program: Program) -> str:
+def _module(
+    part: PackagedFile, program: Program, shown: Sequence[str], table: Mapping[str, tuple[str, str, str]]
+) -> Module:
+    """A file as a module of numba."""
     varying = [name for name in program.inputs if name != "branch"]
-    limits = Limits(LEAST, {"theta": constants().limit})
-    lines = guarded_for_loops(program, varying, limits, constants())
-    return emit_numba(
-        nest(lines, dict.fromkeys(varying, 0), 1), f"{part.file}: kernel for arrays.\n\n{banner}\n"
+    units = {name: unit for name, (unit, _, _) in table.items()}
+    outputs = [units.get(name.replace("omega", "omega0") if part.state else name, "1") for name in shown]
+    outputs[-1] = "m"  # the margin
+    return Module(
+        name=part.file,
+        head=(),
+        inputs=tuple(Symbol(name, INPUTS[name].unit, INPUTS[name].meaning) for name in varying),
+        outputs=tuple(Symbol(name, unit, "") for name, unit in zip(shown, outputs, strict=True)),
+        forms=Forms(shown.index("status"), guard_inputs(program, varying, LEAST, {})),
+        constants=constants(),
+        angle="theta",
+        functions=False,
     )
 
 

@@ -20,7 +20,8 @@ from ..shared import arrays_of, numbers, one_line
 from .module import IMPORTS, NJIT, SOURCES, numba_parts
 
 HELPER_FILE = "_helpers"
-FRONT = SOURCES / "front.py"
+FRONT, SPELLINGS = SOURCES / "front.py", SOURCES / "spellings.py"
+_TURNED = ("rotated_sin", "rotated_cos")  # there, but no functions
 TEST = "has_wide_margins"
 INLINED = '@njit(error_model="numpy", forceinline=True)\n'
 FORMULAS = {
@@ -33,21 +34,28 @@ MADE = ("near_sin_cos", "sin_cos", "sines")  # functions that are written from a
 # ---- what modules call ------------------------------------------------------------------------------
 
 
-def emit_helpers(banner: str, constants: Trigonometry) -> str:
-    """The text of the file that all modules of a folder call."""
-    spelled = ["mul_add", "rotated_sin", "two_product_error", "two_sum_error", "rounding", "apart"]
-    calls = "".join(f"{name}()\n" for name in spelled)  # asks for their text
-    return module_text(banner, _without(numba_parts([calls]), calls), _front(), _sines(constants))
+def emit_folder(
+    modules: Mapping[str, tuple[Module, str]], banner: str, constants: Trigonometry
+) -> dict[str, str]:
+    """The texts of modules, each with its docstring, by file, and of the file of helpers that they call."""
+    own = {name: _Writer(module).parts() for name, (module, _) in modules.items()}
+    texts = {text for parts in own.values() for text in parts.texts}
+    called = numba_parts([*_sines(constants).texts, *_front().texts, *texts])
+    helpers = called._replace(texts=tuple(text for text in called.texts if text not in texts))
+    words = frozenset[str]().union(*map(words_of, helpers.texts))
+    names = [*functions_of(FRONT), *functions_of(HELPERS), *functions_of(SPELLINGS), *MADE, "BLOCK", *_TURNED]
+    imports = IMPORTS | dict.fromkeys(names, f".{HELPER_FILE}")
+    texts_of = {
+        name: module_text(docstring, own[name]._replace(imports=imports))
+        for name, (_, docstring) in modules.items()
+    }
+    return texts_of | {HELPER_FILE: module_text(banner, _front(), helpers._replace(words=words))}
 
 
 def _front() -> Parts:
     front = source_of(FRONT)
     words = frozenset[str]().union(*(statement.words for statement in front.statements))
     return Parts(tuple(statement.text for statement in front.statements), words, front.imports)
-
-
-def _without(parts: Parts, text: str) -> Parts:
-    return parts._replace(texts=tuple(each for each in parts.texts if each != text))
 
 
 def _sines(constants: Trigonometry) -> Parts:
@@ -181,16 +189,6 @@ def search_@NAME@(nodes, sin_nodes, cos_nodes, kind, designs, first, last, theta
 # ---- a module ---------------------------------------------------------------------------------------
 
 
-def emit_in_folder(module: Module, docstring: str) -> str:
-    """The text of a module beside the file of helpers."""
-    own = _Writer(module).parts()
-    helpers = dict.fromkeys(
-        [*functions_of(FRONT), *functions_of(HELPERS), *MADE, *_SPELLED], f".{HELPER_FILE}"
-    )
-    imports = IMPORTS | {"BLOCK": f".{HELPER_FILE}"} | helpers
-    return module_text(docstring, own._replace(imports=imports))
-
-
 def emit_alone(module: Module, docstring: str) -> str:
     """The text of a module that needs no other file."""
     own = _Writer(module).parts()
@@ -203,9 +201,6 @@ def emit_alone(module: Module, docstring: str) -> str:
         own,
         *([module.more] if module.more else []),
     )
-
-
-_SPELLED = ("apart", "mul_add", "rotated_sin", "rotated_cos", "two_product_error")
 
 
 def _statements(program: Program, several: bool = True) -> list[str]:
