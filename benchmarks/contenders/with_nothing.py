@@ -6,22 +6,14 @@ the ones that desaxe writes into its loops.
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numba
 import numpy as np
 
-from desaxe.compiler.kernel import tabulate
-from desaxe.compiler.languages.numba.module import emit_numba
-from desaxe.compiler.passes.trigonometry import expand_trigonometry
-from desaxe.compiler.passes.value_numbering import value_numbering
-from desaxe.compiler.text import read_function
-from desaxe.mechanism.constants import constants
+from desaxe.generated._helpers import sines
 
 from ..work import DEGREE, TURNS, Array, Inputs, Work
 from . import Run
-
-BOTH = "def both(theta):\n    sine = sin(theta)\n    cosine = cos(theta)\n    return sine, cosine\n"
 
 
 def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: int) -> Run:
@@ -46,7 +38,7 @@ def _repeated(key: str, column: Array) -> Run:
     """TURNS times over the column."""
     kernels = {"sqrt": _roots, "divide": _quotients, "multiply_add": _polynomial}
     compiled = (
-        _sines() if key == "sincos" else numba.njit(error_model="numpy", fastmath={"contract"})(kernels[key])
+        sines if key == "sincos" else numba.njit(error_model="numpy", fastmath={"contract"})(kernels[key])
     )
     answers = [np.empty(column.size), np.empty(column.size)]
 
@@ -98,11 +90,3 @@ def _copied(column: Array) -> Run:
         return [target]
 
     return run
-
-
-def _sines() -> Any:
-    """The loop that desaxe would compile for a sine and a cosine."""
-    program = value_numbering(expand_trigonometry(read_function(BOTH), constants()))
-    scope: dict[str, Any] = {}
-    exec(emit_numba(tabulate(program, {"theta": 0}, 1), "Both."), scope)
-    return scope["kernel"]

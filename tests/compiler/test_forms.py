@@ -7,9 +7,8 @@ import pytest
 
 from desaxe.compiler.forms import in_two_forms, parted
 from desaxe.compiler.kernel import hoist, tabulate
-from desaxe.compiler.languages.numba.module import emit_numba
-from desaxe.compiler.languages.numba.two_forms import BIGGEST, block_of, has_two_forms
 from desaxe.compiler.program import Line, Program, validate
+from desaxe.runtime.executor import CompiledKernel
 
 # The forms differ on purpose, so that a result tells which one it is from.
 PLAIN = Program(("x", "y"), (Line("s", "sin", ("x",)), Line("out", "add", ("s", "y"))), ("out", "x"), {})
@@ -21,13 +20,13 @@ BOTH = in_two_forms(PLAIN, STABLE, TEST)
 @cache
 def kernel_for(x_axis, y_axis, place=hoist):
     kernel = parted(place(BOTH, {"x": x_axis, "y": y_axis}, 1 + max(x_axis, y_axis)), 2)
-    scope = {}
-    exec(emit_numba(kernel, "two forms"), scope)
+    compiled = CompiledKernel(kernel)
+    return kernel, lambda x, y, *outs: compiled.run({"x": x, "y": y}, outs)
 
-    def run(x, y, *outs):
-        scope["kernel"](*({"x": x, "y": y}[name] for name in kernel.inputs), *outs)
 
-    return kernel, run
+def varies_inside(kernel):
+    """True if the test changes from point to point of the innermost axis."""
+    return bool(kernel.close.test_lines)
 
 
 def wanted(x, y):
@@ -42,7 +41,7 @@ def test_equal_lines_are_computed_once():
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 1.0])
 def test_each_point_has_the_form_that_its_test_says(size, share):
     kernel, run = kernel_for(0, 0)
-    assert has_two_forms(kernel)
+    assert varies_inside(kernel)
     rng = np.random.default_rng(size)
     x = rng.uniform(-3, 3, size)
     y = np.where(rng.random(size) < share, 2.0, 0.5)
@@ -55,7 +54,7 @@ def test_each_point_has_the_form_that_its_test_says(size, share):
 @pytest.mark.parametrize("place", [hoist, tabulate])
 def test_a_test_of_an_outer_axis_picks_the_loop(place):
     kernel, run = kernel_for(1, 0, place)
-    assert not has_two_forms(kernel)
+    assert not varies_inside(kernel)
     x, y = np.linspace(-3, 3, 40), np.array([0.5, 2.0, -0.1, np.nan])
     out, echo = np.empty((4, 40)), np.empty((4, 40))
     run(x, y, out, echo)
@@ -66,8 +65,8 @@ def test_a_test_of_an_outer_axis_picks_the_loop(place):
 def test_tables_and_blocks_go_together(place):
     kernel, run = kernel_for(1, 0, place)
     other, again = kernel_for(0, 1, place)
-    assert has_two_forms(other)
-    assert not has_two_forms(kernel)
+    assert varies_inside(other)
+    assert not varies_inside(kernel)
     x, y = np.linspace(-3, 3, 9), np.linspace(-2, 2, 700)
     (out, echo), (rotated_sin, echoed) = ([np.empty(s), np.empty(s)] for s in ((700, 9), (9, 700)))
     run(x, y, out, echo)
@@ -80,12 +79,10 @@ def test_an_output_may_come_from_a_table_whole():
     product = Line("p", "mul", ("x", "y"))
     sine, cosine = (Program(("x", "y"), (product, Line("out", op, ("p",))), ("out",), {}) for op in FORMS)
     kernel = parted(tabulate(in_two_forms(sine, cosine, TEST), {"x": 0, "y": 2}, 3), 1)
-    assert has_two_forms(kernel)
+    assert varies_inside(kernel)
     assert kernel.tables[0].kernel.outputs == ("out", "out_close")
-    scope = {}
-    exec(emit_numba(kernel, "two forms"), scope)
     x, y, out = np.linspace(-3, 3, 4), np.linspace(-2, 2, 700), np.empty((4, 5, 700))
-    scope["kernel"](x, y, out)
+    CompiledKernel(kernel).run({"x": x, "y": y}, [out])
     p = x[:, None, None] * y
     np.testing.assert_allclose(out, np.where(np.abs(y) < 1, np.sin(p), np.cos(p)) + 0 * out, rtol=1e-14)
 
@@ -100,23 +97,14 @@ def test_a_test_that_is_not_known_is_not_passed():
     assert np.array_equal(out, [0.5, np.nan, 0.25], equal_nan=True)
 
 
-def test_rooms_fit_on_the_stack():
-    kernel, _ = kernel_for(0, 0)
-    assert block_of(kernel) == BIGGEST
-    wide = kernel._replace(outputs=tuple(f"out{k}" for k in range(600)))
-    assert 16 <= block_of(wide) < 64
-
-
 @pytest.mark.parametrize("axes", [{"x": 0, "y": 0}, {"y": 0, "x": 1}])
 def test_a_kernel_tells_how_many_of_its_points_are_undecided(axes):
     """Of those in the stable form alone, in loops that a block or an outer axis picks."""
     low = Line("low", "lt", ("x", 0.0), "bool")
     unsure = STABLE._replace(lines=(*STABLE.lines, low), outputs=(*STABLE.outputs, "low"))
     kernel = parted(hoist(in_two_forms(PLAIN, unsure, TEST), axes, len(set(axes.values()))), 2)
-    scope = {}
-    exec(emit_numba(kernel, "two forms"), scope)
     x, y = np.linspace(-3, 3, 60), np.where(np.arange(60) % 3, 0.5, 2.0)
     shape = (60,) if axes["x"] == axes["y"] else (60, 60)
     close = np.broadcast_to(y if len(shape) == 1 else y[:, None], shape) >= 1
     outs = np.empty(shape), np.empty(shape)
-    assert scope["kernel"](*({"x": x, "y": y}[n] for n in kernel.inputs), *outs) == (close & (x < 0)).sum()
+    assert CompiledKernel(kernel).run({"x": x, "y": y}, outs) == (close & (x < 0)).sum()

@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from desaxe.compiler.kernel import hoist, level_program, tabulate
-from desaxe.compiler.languages.numba.module import emit_numba
 from desaxe.compiler.passes.pipeline import optimise
 from desaxe.compiler.program import Line, Note, Program, names_in
+from desaxe.runtime.executor import CompiledKernel
 from tests.compiler.programs import INPUTS, committed, depends_on, programs
 from tests.effort import cases
 
@@ -82,10 +82,8 @@ def filled(kernel, order):
     """The outputs of the kernel over a small grid."""
     values = {"theta": np.linspace(0, 7, 9), "ec": np.linspace(-0.1, 0.3, 4)}
     values |= {"AB": np.linspace(0.1, 0.2, 3), "BC": np.linspace(0.3, 0.4, 5)}
-    scope = {}
-    exec(emit_numba(kernel, "a grid"), scope)
     outs = [np.zeros([values[name].size for name in order]) for _ in kernel.outputs]
-    scope["kernel"](*(values[name] for name in kernel.inputs), *outs)
+    CompiledKernel(kernel).run(values, outs)
     return outs
 
 

@@ -13,12 +13,13 @@ import pytest
 
 from desaxe.compiler.interpret import ieee
 from desaxe.compiler.kernel import hoist
-from desaxe.compiler.languages.numba.module import emit_numba
+from desaxe.compiler.languages.numba.language import Numba
 from desaxe.compiler.languages.python import SCOPE
 from desaxe.compiler.operations import OPERATIONS, result_type
 from desaxe.compiler.program import Line, Program
 from desaxe.oracle.truth import ulp_error
 from desaxe.runtime.executor import CompiledKernel
+from tests.compiler.languages.modules import module
 from tests.compiler.programs import same_bits
 
 TINY, LEAST, MOST = 5e-324, 2.2250738585072014e-308, 1.7976931348623157e308
@@ -115,8 +116,9 @@ def every_operation():
 @cache
 def numba_spellings():
     scope = {}
-    exec(emit_numba(hoist(every_operation(), {"a": 0, "b": 0, "c": 0}, 1), "every operation"), scope)
-    return scope["kernel"]
+    made = module(every_operation())._replace(functions=False)
+    exec(Numba().files(made)["made.py"], scope)
+    return scope["evaluate"]
 
 
 def shown(name, kind):
@@ -132,9 +134,7 @@ def columns_of(op, points):
 
 
 def by_numba(op, points):
-    outs = [np.empty(len(points)) for _ in OPS]
-    numba_spellings()(*columns_of(op, points), *outs)
-    return outs[OPS.index(op)]
+    return numba_spellings()(*columns_of(op, points))[f"out_{op}"]
 
 
 @pytest.mark.parametrize("op", OPS)

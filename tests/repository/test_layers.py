@@ -60,11 +60,11 @@ def test_sympy_and_the_derivation_are_imported_by_derive_alone(room):
     assert not [pair for pair in imports_of(room) if is_in(pair[1], "sympy", "derive", "desaxe.derive")]
 
 
-def test_generated_imports_only_math_numpy_and_numba():
+def test_generated_imports_numpy_numba_and_the_standard_library_only():
     assert not [
         pair
         for pair in imports_of("desaxe.generated")
-        if not is_in(pair[1], "math", "numpy", "numba", "desaxe.generated._helpers")
+        if not is_in(pair[1], "math", "os", "concurrent", "numpy", "numba", "desaxe.generated._helpers")
     ]
 
 

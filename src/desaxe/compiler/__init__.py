@@ -15,7 +15,6 @@
     languages   Python, numba, C, jax, Octave and JavaScript, one file or folder each
     llvm        machine code in memory, what the library itself runs
     forms       plain and stable lines as one program, set apart in a kernel
-    stages      a program as two loops, so that a processor sees more than one point at a time
 
 The room imports nothing of the library but `support`. To add an operation, add its row; a
 language, its column and its file in `languages`; a pass, its module and its

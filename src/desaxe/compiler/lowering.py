@@ -9,7 +9,7 @@
     5 fuse           passes.fuse.fuse_products         a product and its sum are one instruction
     6 two forms      forms.in_two_forms                the plain form where a test holds, else the stable
     7 hoist          kernel.tabulate                   each line in the outermost loop that has what it needs
-    8 language       languages, llvm                   text; numba's stable form in two loops (stages.staged)
+    8 language       languages, llvm                   text
     9 machine code   llvm.machine                      compiled once a process
 
 Stages 1 and 2 belong to a request, 8 and 9 to a language. What lies between is this file: each function takes

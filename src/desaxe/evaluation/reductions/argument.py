@@ -11,7 +11,6 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ...compiler.languages.numba.reductions import KINDS
 from ...mechanism.catalogue import of_design
 from ...mechanism.inputs import INPUTS
 from ...mechanism.quantity_units import UnitSystem
@@ -20,7 +19,7 @@ from ...mechanism.spelling import did_you_mean
 from ...runtime.request import as_number
 from ...support.shown import shown
 from ...units.text import with_unit_of
-from .kinds import ALLOWED, EXTREMES, kind_of
+from .kinds import ALLOWED, EXTREMES, KINDS, kind_of
 from .own_measure import OwnMeasure
 
 Chain = Sequence[tuple[tuple[str, ...], str]]  # axes and what is taken of them, one after the other

@@ -1,7 +1,6 @@
 """The kinds of reductions: what each is called, and what it is of rows of numbers in memory.
 
-A kind is a row of `OTHERS` (a number made of all) or of `EXTREMES` (one of them, which has a place). Exported
-modules know those of `compiler/languages/numba/reductions`.
+A kind is a row of `OTHERS` (a number made of all) or of `EXTREMES` (one of them, which has a place).
 """
 
 import re
@@ -13,12 +12,20 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...compiler.languages.numba.reductions import KINDS
 from ...mechanism.spelling import did_you_mean
 from ...support.forks import imported
 from ...support.shown import shown
 
 Array = NDArray[Any]
+
+# Those that exported modules have, too (`scenes/export/functions.py`), as CF's `cell_methods` call them.
+KINDS = {
+    "max": "maximum",
+    "min": "minimum",
+    "absmax": "maximum_absolute_value",
+    "mean": "mean",
+    "rms": "root_mean_square",
+}
 
 
 class Extreme(NamedTuple):

@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...compiler.languages.numba.reductions import KINDS
 from ...mechanism.own import Definition
 from ...runtime.threads import run_parts
 from ..axes import Outer
@@ -24,7 +23,7 @@ from ..points import Points, points_of
 from ..under_loads.sides import sides_of
 from .argument import Chain, Reductions, chain_name, extremes_at_end
 from .in_memory import Field, combined, field_of, folded
-from .kinds import kind_called
+from .kinds import KINDS, kind_called
 from .measures import AtPlace, OfDesign
 
 Array = NDArray[Any]

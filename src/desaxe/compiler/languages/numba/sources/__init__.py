@@ -2,8 +2,6 @@
 
 front       loops and functions of arrays of modules that people import
 spellings   functions that numba spells in its own way
-rooms       buffers and flags of a block of points
+rooms       buffers of numbers
 given       a function of the user's behind an address
-lookups     tables looked up at the points of a block
-reductions  reductions of a row
 """

@@ -5,12 +5,7 @@ comparison.
 """
 
 from numba import types
-from numba.core import codegen
 from numba.extending import intrinsic
-
-WIDE = "+avx512f" in codegen.get_host_cpu_features()  # vectors of 512 bits
-# An input may be an array that must not be written to; numba's signature strings cannot say so.
-AXIS = types.Array(types.float64, 1, "C", readonly=True)
 
 
 @intrinsic
