@@ -5,13 +5,13 @@ from numba import njit
 
 @njit(error_model="numpy")
 def score(kind, value):
-    """What is to be large: the magnitude for kind 0, the value, or for kind 2 its negative."""
+    """The number that is to be large: the magnitude for kind 0, the value, or for kind 2 its negative."""
     return abs(value) if kind == 0 else value if kind == 1 else -value
 
 
 @njit(error_model="numpy")
 def may_hold(kind, best, width, value_a, value_b, slope_a, slope_b):
-    """Whether an extremum between two nodes may beat the best: by the slope of the cubic between them."""
+    """True if an extremum between two nodes may beat the best, by the slope of the cubic between them."""
     middle = 1.5 * (value_b - value_a) / width - 0.25 * (slope_a + slope_b)
     more, less = max(abs(slope_a), abs(slope_b)), min(abs(slope_a), abs(slope_b))
     dips = (middle if slope_a > 0.0 else -middle) < 0.25 * more
@@ -21,7 +21,7 @@ def may_hold(kind, best, width, value_a, value_b, slope_a, slope_b):
 
 @njit(error_model="numpy")
 def inside(part, slope_a, slope_b):
-    """Where the first, second and third of four parts of an interval ends: nearer to an end that is flat."""
+    """The ends of the first three of four parts of an interval, nearer to an end that is flat."""
     size_a, size_b = abs(slope_a), abs(slope_b)
     if size_a < 0.02 * size_b:
         return (0.001953125, 0.03125, 0.25)[part]

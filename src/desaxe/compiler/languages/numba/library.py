@@ -318,7 +318,7 @@ class _Writer:
         ]
 
     def value(self, name: str) -> str:
-        """What stands for an input of the formulas."""
+        """The text of an input of the formulas."""
         if name in self.module.fixed:
             return repr(self.module.fixed[name])
         return f"{name}_taken" if name in self.module.centres else name
