@@ -1,4 +1,4 @@
-"""The search for the extreme value of each design, in arrays; written modules have its text, too.
+"""The search for the extreme value of each design, in arrays; plain loops in written modules.
 
 bounds      value and slope at the nodes bound how good an extremum between two of them can be
 candidates  what may beat the best node is looked at again at three angles in between; towards an end that is

@@ -112,7 +112,7 @@ def text_of(scene):
 
 
 def same(found, right):
-    """Equality but for the last bits: the library runs fewer lines, in another order."""
+    """Compare results to rounding: the library runs fewer lines, in another order."""
     scale = np.nanmax(np.abs(right), initial=0.0)
     np.testing.assert_allclose(found, right, rtol=1e-13, atol=1e-14 * scale)
 
