@@ -16,7 +16,7 @@ from ..units.system import DIMENSIONS, Conversion, conversions_by_unit, read_uni
 from .catalogue import quantity
 from .inputs import INPUTS
 from .names import parts
-from .own import register
+from .own import Register, register
 
 PLAIN = Conversion("1")
 # Units of inputs and results that are no quantities of the catalogue.
@@ -151,18 +151,14 @@ class QuantityUnit(str):
 def unit_of(name: Any, by: Any = "") -> QuantityUnit:
     """The unit of a name, or of a measure such as ("absmax", "a_C"); "1" where there is none."""
     told = [part[-1] if isinstance(part, (tuple, list)) else part for part in (name, by)]
-    return (_unit_of if register().rows else _remembered_unit)(
-        *(p if isinstance(p, str) else "" for p in told)
-    )
+    return _unit_of(*(part if isinstance(part, str) else "" for part in told), register())
 
 
-def _unit_of(name: str, by: str) -> QuantityUnit:
+@lru_cache(maxsize=4096)
+def _unit_of(name: str, by: str, known: Register) -> QuantityUnit:
     unit = QuantityUnit(_conversion(SI, name, by).unit)
     unit.name, unit.by = name, by
     return unit
-
-
-_remembered_unit = lru_cache(maxsize=4096)(_unit_of)  # where no quantity of a user's own can change it
 
 
 def units_of(names: Iterable[str]) -> dict[str, QuantityUnit]:
@@ -172,22 +168,16 @@ def units_of(names: Iterable[str]) -> dict[str, QuantityUnit]:
 
 def units_by_name(found: Mapping[Any, Any]) -> dict[Any, Any]:
     """The units of an answer whose keys are the names of what they are, those of `gradient` too."""
-    known = [key for key in found if isinstance(key, str) and _has_unit(key)]
+    known = [key for key in found if isinstance(key, str) and _has_unit(key, register())]
     units: dict[Any, Any] = units_of(known)
     if "gradient" in found:
         units["gradient"] = {name: slopes_of(name, slopes) for name, slopes in found["gradient"].items()}
     return units
 
 
-def _has_unit(key: str) -> bool:
-    return (_is_known if register().rows else _remembered_to_be_known)(key)
-
-
-def _is_known(key: str) -> bool:
+@lru_cache(maxsize=4096)
+def _has_unit(key: str, known: Register) -> bool:
     return key != "status" and SI.find(key) is not None
-
-
-_remembered_to_be_known = lru_cache(maxsize=4096)(_is_known)
 
 
 def units_of_extreme(name: str, found: Mapping[Any, Any]) -> dict[str, Any]:

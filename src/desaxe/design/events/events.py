@@ -18,7 +18,7 @@ from .found import VELOCITIES, DesignEvents, stroke_ends
 
 @with_known_inputs
 def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) -> dict[str, Any]:
-    """Dead centres, stroke, advance and return, and the extremes in between, of designs.
+    """Timing of the stroke: dead centres, advance and return, and the extremes in between, of designs.
 
     ec, AB, BC  lengths [m], numbers or texts with a unit or arrays, which broadcast like NumPy
     branch      +1 or -1
