@@ -312,6 +312,20 @@ def _under_loads(call: Callable[[Any], Any]) -> Ways:
 
 
 @row
+def loaded_arrays() -> Ways:
+    """T_in at 100,000 random angles, under a number and loads that vary."""
+    inputs = {"theta": np.random.default_rng(1).uniform(0.0, 2.0 * pi, 100_000), "ec": 0.01, **LOADED}
+    return _under_loads(lambda load: dx.evaluate(["T_in"], F_Y=load, threads=1, **inputs).keys())
+
+
+@row
+def loaded_angles() -> Ways:
+    """T_in at 721 angles, under a number and loads that vary."""
+    inputs = {"theta": np.linspace(0.0, 2.0 * pi, 721), "ec": 0.01, **LOADED}
+    return _under_loads(lambda load: dx.evaluate(["T_in"], F_Y=load, **inputs).keys())
+
+
+@row
 def loaded_grid() -> Ways:
     """T_in at 721 angles of 512 designs as a grid, under a number and loads that vary."""
     axes = {"theta": np.linspace(0.0, 2.0 * pi, 721), "ec": np.linspace(-0.05, 0.05, 512)}

@@ -93,7 +93,7 @@ def grid(
 
     See docs/choose.md: which call for which question.
     """
-    if any(map(has_named_index, inputs.values())):
+    if any(hasattr(value, "iloc") and has_named_index(value) for value in inputs.values()):
         _refuse_with_series(reduce=reduce, chunks=chunks, out=out)
         wanted = (names,) if isinstance(names, str) else several(names)
         check_inputs("grid", inputs, ARGUMENTS)

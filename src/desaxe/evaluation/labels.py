@@ -1,7 +1,7 @@
 """Names, units and CF attributes for labelled results."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..definitions.tables import text_of
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
+from ..mechanism.own import Register, register
 from ..mechanism.quantity_units import SI, UnitSystem
 from ..mechanism.status import PointStatus
 from ..support.extras import explained
@@ -37,10 +38,15 @@ def attributes(name: str, state: bool = False) -> dict[str, Any]:
     if name == "status":
         flags = np.arange(len(STATUS_FLAGS), dtype=np.int8)
         return {"long_name": "status", "flag_values": flags, "flag_meanings": " ".join(STATUS_FLAGS)}
-    known = quantity(name, state)
-    found = {"units": known.unit, "long_name": known.meaning}
-    if known.source:
-        found["references"] = known.source
+    return {**_attributes(name, state, register())}
+
+
+@lru_cache(maxsize=256)
+def _attributes(name: str, state: bool, known: Register) -> dict[str, str]:
+    row = quantity(name, state, known)
+    found = {"units": row.unit, "long_name": row.meaning}
+    if row.source:
+        found["references"] = row.source
     return found
 
 
@@ -83,7 +89,7 @@ def provenance(
     axes = [name for name, array in inputs.items() if array.ndim]
     fixed = [said(name, array, INPUTS[name].unit) for name, array in inputs.items() if not array.ndim]
     names = tuple(names)
-    own = text_of((*names, *of))
+    own = text_of((*names, *of)) if register().definitions else ""
     scene = ", ".join(names) + (f" over {', '.join(axes)}" if axes else "")
     return {
         **({"quantities": own} if own else {}),
