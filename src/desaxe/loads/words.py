@@ -30,7 +30,13 @@ def brief(load: Any, conversion: Any) -> str:
         words: str = load.told()
         return words[1:-1].removeprefix("load ")
     ends = [conversion.shown(end) for table in load.tables for end in table.range]
-    return f"over {load.over}, " + with_unit(f"{min(ends):g} to {max(ends):g}", conversion.unit)
+    return f"over {load.over}, " + with_unit(span(ends), conversion.unit)
+
+
+def span(ends: Sequence[float]) -> str:
+    """The range of numbers in four digits, without exponents where six will do."""
+    least, most = (f"{x:g}" if "e" in f"{x:.4g}" else f"{x:.4g}" for x in (min(ends), max(ends)))
+    return f"{least} to {most}"
 
 
 def without_points(words: str) -> str:

@@ -5,7 +5,7 @@ import textwrap
 from collections.abc import Collection, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from ..loads.words import without_points
+from ..loads.words import span, without_points
 from ..mechanism.catalogue import has, law_name
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import CENTRES, LOADS
@@ -54,7 +54,7 @@ def _loads(dataset: "xr.Dataset", needs: Collection[str]) -> Iterator[str]:
         over, ranges = table.groups()
         ends = [float(number) for number in _NUMBER.findall(ranges)]
         unit = _NUMBER.sub("", ranges.rpartition(" to ")[2]).strip() or INPUTS[name].unit
-        yield f"{name} over {over}, {min(ends):g} to {max(ends):g} {unit}"
+        yield f"{name} over {over}, {span(ends)} {unit}"
 
 
 def _needs(names: Sequence[str], state: bool) -> Collection[str]:
