@@ -12,6 +12,7 @@ from ..units.system import Conversion
 from ..units.text import spelled
 from .cells import Array, Cells, cells_of
 from .columns import Column, column_of
+from .pressure import needs_piston
 
 # A unit stands at the end of a heading: `Y [mm]`, `Y (mm)`, `Y, mm`, `Y / mm`, `Y in mm`.
 _UNITS = tuple(
@@ -71,6 +72,8 @@ def _converted_column(
     """Numbers in a unit, or without one, as a column in the first SI unit that fits."""
     if unit is None:
         return column_of(what, values, si_units, plain)
+    if "N" in si_units and is_in_table(unit) and parse_unit(unit).si == parse_unit("Pa").si:
+        raise needs_piston(what)
     ordered = si_units[::-1] if is_in_table(unit) else si_units  # the last one's message is raised
     for si in ordered:
         try:

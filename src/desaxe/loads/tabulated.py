@@ -17,6 +17,7 @@ from .function import FunctionOverTheta
 from .load import Load
 from .made import table_over_stroke, table_over_theta, table_over_Y
 from .maker import Maker, naming
+from .pressure import ForceOfPressure, Piston, forces_of, piston_of, pressure_unit
 
 LONGEST_PERIOD = 1e9
 
@@ -43,6 +44,10 @@ class MakeOverTheta(Maker):
 
     `over_theta.read("press.csv", theta="deg", value="N")` reads a table from the first two columns of a file.
 
+    area, bore  of a piston; also in `over_Y`, `over_stroke` and each `read`. Values are then pressures [Pa],
+                or texts in bar, MPa, psi; the load is -(p - ambient) area: gas pushes it towards the crank
+    ambient     the pressure on its other side; 0 without
+
     Derivatives by theta are total: they include the load's slope; at a kink it is that to the right. Raises
     ValueError or TypeError for a table that is no periodic function.
     """
@@ -59,10 +64,14 @@ class MakeOverTheta(Maker):
         *,
         derivative: Callable[[Any], Any] | None = None,
         nodes: Any = (),
+        area: Any = None,
+        bore: Any = None,
+        ambient: Any = None,
     ) -> Load:
         """A load over the crank angle; see `help(desaxe.over_theta)`."""
         name = "over_theta"
         turn = self._period(period)
+        piston = piston_of(name, area, bore, ambient, self.units)
         if callable(angles):
             if derivative is None and callable(values):  # over_theta(f, derivative, nodes)
                 derivative, values = values, None
@@ -74,7 +83,9 @@ class MakeOverTheta(Maker):
                 raise TypeError(f"{name}: derivative = {derivative!r}: expected a function of theta")
             places = column_of(f"{name}: nodes", nodes, ("rad",), self.unit("theta")).values
             if self.units:
-                angles, derivative = _in_units_of(self.units, angles, derivative)
+                angles, derivative = _in_units_of(self.units, angles, derivative, piston)
+            elif piston is not None:
+                angles, derivative = _of_pressure(angles, derivative, piston)
             return FunctionOverTheta(angles, derivative, tuple(places), turn.values[0])
         if derivative is not None or len(nodes):
             raise TypeError(f"{name}: derivative= and nodes= belong to a function; a table has its own")
@@ -82,7 +93,7 @@ class MakeOverTheta(Maker):
         x = column_of(f"{name}: angles", angles, ("rad",), self.unit("theta"))
         if values is None:
             raise TypeError(f"{name}: values is missing (angles and values, or a function of theta)")
-        y = column_of(f"{name}: values", values, ("N", "N*m"), _force(self.units))
+        y = forces_of(f"{name}: values", values, ("N", "N*m"), _force(self.units), piston, self.units)
         return table_over_theta(x, y, kind, turn, self.units)
 
     def read(
@@ -92,6 +103,10 @@ class MakeOverTheta(Maker):
         value: str | None = None,
         kind: str = "cubic",
         period: Any = TURN,
+        *,
+        area: Any = None,
+        bore: Any = None,
+        ambient: Any = None,
     ) -> Load:
         """A load over the crank angle from the first two columns of a file or a frame.
 
@@ -105,11 +120,13 @@ class MakeOverTheta(Maker):
         commas. Lines above the numbers are a heading, lines that begin with # are left out. Raises
         ValueError, which names file, line and column.
         """
+        piston = piston_of("over_theta.read", area, bore, ambient, self.units)
         x, y = self.columns_of_file(
             path,
             ("theta", theta, ("rad",), self.unit("theta")),
-            ("value", value, ("N", "N*m"), _force(self.units)),
+            ("value", value, *_values(("N", "N*m"), piston, self.units)),
         )
+        y = y if piston is None else piston.column(y)
         with naming(path):
             return table_over_theta(x, y, kind, self._period(period), self.units)
 
@@ -149,16 +166,39 @@ class MakeOverY(Maker):
     name = "over_Y"
     takes = "positions, outward, inward=None"
 
-    def __call__(self, positions: Any, outward: Any = None, inward: Any = None, kind: str = "linear") -> Load:
+    def __call__(
+        self,
+        positions: Any,
+        outward: Any = None,
+        inward: Any = None,
+        kind: str = "linear",
+        *,
+        area: Any = None,
+        bore: Any = None,
+        ambient: Any = None,
+    ) -> Load:
         """A load over the slider's position; see `help(desaxe.over_Y)`."""
-        return table_over_Y(*_columns("over_Y", "positions", positions, outward, inward, self.units), kind)
+        piston = piston_of("over_Y", area, bore, ambient, self.units)
+        columns = _columns("over_Y", "positions", positions, outward, inward, self.units, piston)
+        return table_over_Y(*columns, kind)
 
-    def read(self, path: Any, Y: str | None = None, value: str | None = None, kind: str = "linear") -> Load:
+    def read(
+        self,
+        path: Any,
+        Y: str | None = None,
+        value: str | None = None,
+        kind: str = "linear",
+        *,
+        area: Any = None,
+        bore: Any = None,
+        ambient: Any = None,
+    ) -> Load:
         """A load over the slider's position from a file or a frame: position, outward and perhaps inward.
 
         Y, value are the units of the columns; the form of the file is that of `over_theta.read`.
         """
-        columns = _columns_of_file(self, path, "Y", Y, value)
+        piston = piston_of("over_Y.read", area, bore, ambient, self.units)
+        columns = _columns_of_file(self, path, "Y", Y, value, piston)
         with naming(path):
             return table_over_Y(*columns, kind)
 
@@ -199,9 +239,13 @@ class MakeOverStroke(Maker):
         kind: str = "linear",
         *,
         dead_centre: Any = None,
+        area: Any = None,
+        bore: Any = None,
+        ambient: Any = None,
     ) -> Load:
         """A load over the distance from a dead centre; see `help(desaxe.over_stroke)`."""
-        columns = _columns("over_stroke", "distances", distances, outward, inward, self.units)
+        piston = piston_of("over_stroke", area, bore, ambient, self.units)
+        columns = _columns("over_stroke", "distances", distances, outward, inward, self.units, piston)
         return table_over_stroke(*columns, kind, dead_centre)
 
     def read(
@@ -212,12 +256,16 @@ class MakeOverStroke(Maker):
         kind: str = "linear",
         *,
         dead_centre: Any = None,
+        area: Any = None,
+        bore: Any = None,
+        ambient: Any = None,
     ) -> Load:
         """A load over the distance from a dead centre from a file: distance, outward and perhaps inward.
 
         distance, value are the units of the columns; the form of the file is that of `over_theta.read`.
         """
-        columns = _columns_of_file(self, path, "distance", distance, value)
+        piston = piston_of("over_stroke.read", area, bore, ambient, self.units)
+        columns = _columns_of_file(self, path, "distance", distance, value, piston)
         with naming(path):
             return table_over_stroke(*columns, kind, dead_centre)
 
@@ -228,7 +276,13 @@ over_stroke = MakeOverStroke()
 
 
 def _columns(
-    name: str, places: str, x: Any, outward: Any, inward: Any, units: UnitSystem | None
+    name: str,
+    places: str,
+    x: Any,
+    outward: Any,
+    inward: Any,
+    units: UnitSystem | None,
+    piston: Piston | None,
 ) -> tuple[Column, list[Column]]:
     """Positions or distances, and the values for each way."""
     x, outward = places_and_values(x, outward)
@@ -244,16 +298,24 @@ def _columns(
     if outward is None:
         raise TypeError(f"{name}: outward is missing: the load at each of the {places}")
     ways = [("outward", outward), *([] if inward is None else [("inward", inward)])]
-    return at, [column_of(f"{name}: {way}", values, ("N",), _force(units)) for way, values in ways]
+    force = _force(units)
+    return at, [forces_of(f"{name}: {way}", values, ("N",), force, piston, units) for way, values in ways]
 
 
 def _columns_of_file(
-    maker: Maker, path: Any, places: str, unit: str | None, value: str | None
+    maker: Maker, path: Any, places: str, unit: str | None, value: str | None, piston: Piston | None
 ) -> tuple[Column, list[Column]]:
     """The columns of a file: positions or distances, outward and, where there are numbers, inward."""
-    ways = [(way, value, ("N",), _force(maker.units)) for way in ("outward", "inward")]
+    ways = [(way, value, *_values(("N",), piston, maker.units)) for way in ("outward", "inward")]
     place, *columns = maker.columns_of_file(path, (places, unit, ("m",), maker.unit("Y")), *ways)
-    return place, columns
+    return place, columns if piston is None else [piston.column(column) for column in columns]
+
+
+def _values(
+    units: tuple[str, ...], piston: Piston | None, system: UnitSystem | None
+) -> tuple[tuple[str, ...], Conversion | None]:
+    """The SI units of a column, and the unit of plain numbers: of pressures where there is a piston."""
+    return (units, _force(system)) if piston is None else (("Pa",), pressure_unit(system))
 
 
 @dataclass(frozen=True)
@@ -274,11 +336,20 @@ class Converted:
         return self.value.to_si(self.function(self.angle.shown(theta)))
 
 
-def _in_units_of(units: UnitSystem, function: Any, derivative: Any) -> tuple[Any, Any]:
+def _in_units_of(units: UnitSystem, function: Any, derivative: Any, piston: Piston | None) -> tuple[Any, Any]:
     """A function and its derivative in a machine's units, as ones in SI units."""
-    angle, force = units.of("theta"), _force(units) or Conversion("N")
-    slope = None if derivative is None else Converted(derivative, angle, force.per([angle]))
-    return Converted(function, angle, force), slope
+    angle, value = units.of("theta"), _force(units) or Conversion("N")
+    if piston is not None:
+        value = pressure_unit(units) or Conversion("Pa")
+    slope = None if derivative is None else Converted(derivative, angle, value.per([angle]))
+    converted = Converted(function, angle, value)
+    return (converted, slope) if piston is None else _of_pressure(converted, slope, piston)
+
+
+def _of_pressure(function: Any, derivative: Any, piston: Piston) -> tuple[Any, Any]:
+    """A function that returns pressures [Pa], and its derivative, as ones of forces."""
+    slope = None if derivative is None else ForceOfPressure(derivative, piston.area, 0.0)
+    return ForceOfPressure(function, piston.area, piston.ambient), slope
 
 
 def _unit(units: UnitSystem | None, name: str) -> Conversion | None:

@@ -26,6 +26,7 @@ DIMENSIONS = {
     "energy": "J",
     "power": "W",
     "inertia": "kg*m^2",
+    "pressure": "Pa",
 }
 MOST = 100  # units of one text or table
 _PER_SECOND = {"m/s": "/s", "m/s^2": "/s^2", "m/s^3": "/s^3"}
