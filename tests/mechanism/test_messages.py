@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import desaxe as dx
-from desaxe.mechanism import slips
+from desaxe.mechanism import public, slips
 from desaxe.mechanism.messages import amount, errors_in, listed, named
 from desaxe.mechanism.quantity_units import UnitSystem
 
@@ -127,6 +127,7 @@ SLIPS = {
 @pytest.mark.parametrize("told", SLIPS)
 def test_slips_of_motors_are_told(told):
     slips.WARNED.clear()
+    public.LOOKS[0] = 1000
     with pytest.warns(dx.UnitWarning, match=told) as warned:
         SLIPS[told]()
     assert [each.filename for each in warned] == [__file__]

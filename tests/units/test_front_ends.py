@@ -15,7 +15,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.cli import main
-from desaxe.mechanism import slips
+from desaxe.mechanism import public, slips
 from desaxe.mechanism.inputs import INPUTS
 from desaxe.mechanism.read import in_si
 
@@ -180,6 +180,7 @@ SAMPLE = {"theta": [0.0, 1.0], "Y": [0.4, 0.3]}
 def _fresh():
     """No slip and no definition of another test."""
     slips.WARNED.clear()
+    public.LOOKS[0] = 1000
     yield
     if "echo" in dx.quantities():
         dx.undefine("echo")
@@ -394,6 +395,9 @@ def test_a_function_warns_once_of_each_kind():
         dx.evaluate("V_C", **design | {"theta": np.float64(75), "AB": np.float64(125), "BC": 350.123456})
         dx.grid("V_C", **design | {"theta": np.array([60.0, 90.0]), "omega0": 1800})
         dx.Machine(**SIZES, ec=0, units="deg").evaluate("Y", theta=60)  # within it is called with radians
+        slips.WARNED.clear()
+        public.LOOKS[0] = 0
+        dx.evaluate("V_C", **design)  # after a thousand calls, which nobody types
 
 
 @pytest.mark.parametrize(

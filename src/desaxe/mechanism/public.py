@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import wraps
 from math import inf
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from ..support.forks import IMPORTS
 from .typical import FORCES, KINDS
@@ -12,6 +12,7 @@ P = ParamSpec("P")
 T = TypeVar("T")
 # Numbers up to which a function need not look closer; those of offsets and forces depend on the lengths.
 HARMLESS = {name: kind.most for name, kind in KINDS.items()} | {"ec": 0.3, "F_X": 1e4, "F_Y": 1e4}
+LOOKS = [1000]  # calls that are still looked at: what a person has typed is among the first of a process
 
 
 def warning(function: Callable[P, T]) -> Callable[P, T]:
@@ -19,19 +20,13 @@ def warning(function: Callable[P, T]) -> Callable[P, T]:
 
     @wraps(function)
     def public(*args: P.args, **inputs: P.kwargs) -> T:
-        for name, value in inputs.items():
-            if type(value) is float or type(value) is int:
-                harmless = name not in HARMLESS or -HARMLESS[name] <= value <= HARMLESS[name]
-            elif name in FORCES:
-                harmless = getattr(value, "largest", inf) <= HARMLESS.get(name, 0.0)
-            else:
-                harmless = not isinstance(value, (str, tuple))
-            if not harmless:
+        if LOOKS[0]:
+            LOOKS[0] -= 1
+            if not all(map(_is_harmless, inputs, inputs.values())):
                 with IMPORTS:
                     from .slips import warn_once
 
                 warn_once(inputs)
-                break
         try:
             return function(*args, **inputs)
         except TypeError as error:
@@ -41,3 +36,12 @@ def warning(function: Callable[P, T]) -> Callable[P, T]:
 
     public.__module__ = "desaxe"
     return public
+
+
+def _is_harmless(name: str, value: Any) -> bool:
+    """True for a value that needs no closer look."""
+    if type(value) is float or type(value) is int:
+        return name not in HARMLESS or -HARMLESS[name] <= value <= HARMLESS[name]
+    if name in FORCES:
+        return bool(getattr(value, "largest", inf) <= HARMLESS[name])
+    return not isinstance(value, (str, tuple))
