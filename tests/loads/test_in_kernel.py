@@ -28,7 +28,9 @@ LOADS = {
     "forty lines over Y": dx.over_Y(0.25 + 0.2 * (EVEN / 6.2) ** 2, 100.0 * np.sin(EVEN)),
     "even cubics over theta": dx.over_theta(EVEN, 100.0 * np.sin(EVEN)),
     "uneven steps over theta": dx.over_theta(EVEN**2 / 6.2, 100.0 * np.cos(EVEN), kind="step"),
-    "a function": dx.over_theta(np.cos, lambda theta: -np.sin(theta)),
+    "a function": dx.over_theta(
+        lambda theta: np.cos(np.nan_to_num(theta)), lambda theta: -np.sin(np.nan_to_num(theta))
+    ),
 }
 FIRST = "steps over Y, both ways"
 CASES = [pytest.param(name, marks=() if name == FIRST else thorough) for name in LOADS]
