@@ -1,10 +1,10 @@
 """The report of a scene as text for a terminal, at most 100 columns wide."""
 
 from collections.abc import Callable, Sequence
-from math import degrees, isfinite, isnan, pi
+from math import degrees, isfinite, isnan, pi, prod
 from pathlib import Path
 from textwrap import fill
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,10 +23,15 @@ from .parts.motor import MotorResult
 from .parts.turning import FeasibilityResult
 from .run import CheckResult, Run
 from .stores.places import data_files
+from .stores.tables import table_of
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 WIDTH = 100  # columns
 ROWS = 24  # of a table; a longer one is thinned out
 HUGE = 1e6  # percent: more is written as a power of ten
+FEW = 12  # points whose values are printed
 GAPS = 5  # designs that cannot turn fully
 
 
@@ -40,7 +45,7 @@ def report(content: Content, result: Run, units: UnitSystem) -> str:
     parts += [feasibility_report(result.feasibility, units)] if result.feasibility else []
     parts += [_peak(found, units) for found in peaks]
     parts += [_steady(result.steady, content, units)] if result.steady is not None else []
-    parts += [_values(content, result)] if result.dataset is not None else []
+    parts += [_values(content, result, units)] if result.dataset is not None else []
     parts += [files_report(content, result)] if result.files or result.failures else []
     return "\n\n".join(parts)
 
@@ -270,8 +275,8 @@ def steady_remarks(found: MotorResult) -> list[str]:
 # ---- values and files ----------------------------------------------------------------------------
 
 
-def _values(content: Content, result: Run) -> str:
-    """The section on the labelled result: its names and axes."""
+def _values(content: Content, result: Run, units: UnitSystem) -> str:
+    """The section on the labelled result: its names and axes, and the values where they are few."""
     assert result.dataset is not None
     shape = " x ".join(f"{name} ({size})" for name, size in result.dataset.sizes.items())
     kept = "" if content.data is not None else '\n  not kept in a file: give [results] data = "out/values.nc"'
@@ -280,7 +285,22 @@ def _values(content: Content, result: Run) -> str:
         return f"Values\n  {', '.join(map(str, result.dataset.data_vars))} over {shape or 'one point'}{kept}"
     taken = content.reduction
     of = f" ({', '.join(taken.kinds)} over {', '.join(taken.axes)})" if taken else ""
-    return f"Values\n  {', '.join(content.outputs)}{of} over {shape or 'one point'}{kept}"
+    head = f"Values\n  {', '.join(content.outputs)}{of} over {shape or 'one point'}{kept}"
+    return "\n".join(
+        [head, *_few_values(result.dataset if content.units else in_units(result.dataset, units))]
+    )
+
+
+def _few_values(dataset: "xr.Dataset") -> list[str]:
+    """The values of a few points: a line for each name of one point, else a table that fits."""
+    if prod(dataset.sizes.values()) > FEW:
+        return []
+    heads, *rows = table_of(dataset)
+    cells = [[number(value) if isinstance(value, float) else str(value) for value in row] for row in rows]
+    if not dataset.sizes:
+        return table(list(zip(heads, cells[0], strict=True)), "lr")
+    lines = table([heads, *cells], "r")
+    return lines if max(map(len, lines)) <= WIDTH else []
 
 
 def files_report(content: Content, result: Run) -> str:
