@@ -9,7 +9,6 @@ evaluations  value, slope and gradient in machine code
 special      special designs: limit angles, stall, friction
 designs      the search over all designs of a request
 loaded       value, slope and gradient under loads that vary with the motion
-under        these loads as lines of Programs, their tables as arguments
 course       these loads over the angle: kinks, jumps, nodes
 jumps        extrema at jumps and kinks: their side, angle and gradient
 differences  the slope of a load that is a function, where it was not given

@@ -57,9 +57,11 @@ class TotalsFunction:
 
 
 def _flat(values: Array, shape: tuple[int, ...]) -> Array:
-    """An array of one dimension; a number is repeated without a copy."""
+    """The values of a shape in one dimension."""
+    if values.shape == shape:
+        return values.reshape(-1)
     if values.size == 1:
-        return np.broadcast_to(values.reshape(()), (prod(shape),))
+        return np.full(prod(shape), values.item())
     return np.broadcast_to(values, shape).reshape(-1)
 
 

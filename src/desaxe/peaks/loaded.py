@@ -1,26 +1,30 @@
 """A quantity under loads that vary with the motion, with total derivatives.
 
-Between jumps the piece of a load over Y is held, so that next to one a value is the limit
-from its side; there are nodes on both.
+Loads are lines of the Programs of the search: one over the crank angle is an input, as its derivative is; a
+table over the slider's place is an argument of the machine code. Between jumps the piece of such a table is
+held, as the arcs of each design tell it, so that next to a jump a value is the limit from its side; there are
+nodes on both. Double-double arithmetic looks nothing up, and derivatives that are not derived have no totals:
+there the loads come first, then the values.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.under_loads.columns import MOTION, forces_at, plan_for
-from ..evaluation.under_loads.request import table_arrays
+from ..evaluation.under_loads.request import table_arrays, under_loads
 from ..evaluation.values import values
+from ..loads.load import Load, OverTheta, OverY
 from ..loads.resolve import Forces, LoadPlan
+from ..mechanism.load_lines import LoadLines
 from ..mechanism.names import parts, sensitivity
 from .course import Course
 from .evaluations import Evaluations, compiled, totals_of
 from .nodes import Array
 from .programs import Search, needs_own, programs_of
 from .special import SearchedDesigns
-from .under import over_theta_at, search_under
 
 Rows = NDArray[np.intp]
 
@@ -119,3 +123,35 @@ class ValuesUnderLoads:
     def finish(self, theta: Array, block: Array) -> Array:
         """Value, slope and gradient at an angle of each design: a row each."""
         return np.array(self.at(len(self.all), block[0].astype(np.intp), theta))
+
+
+def search_under(search: Search, names: Sequence[str], designs: SearchedDesigns) -> Search | None:
+    """The search of total derivatives under loads; None in double-double arithmetic, which looks nothing up.
+
+    names   the quantity, its slope over theta, its gradient
+    """
+    if search.extended:
+        return None
+    inputs = {**dict.fromkeys(MOTION), "alpha": 0.0, "theta": 0.0, **designs.columns}
+    _, plan = plan_for(names, {**inputs, **designs.loads})
+    under = under_loads(plan, inputs, designs.branch, "standard").wanted.form.under
+    if under is None or len(plan.loads) < len(designs.loads):
+        return None
+    lines = (_line(line, designs.loads[line.force]) for line in under.loads)
+    return search._replace(form=search.form._replace(under=under._replace(loads=tuple(lines))))
+
+
+def _line(line: LoadLines, load: Load) -> LoadLines:
+    if isinstance(load, OverY):
+        return line._replace(held=True, ways=False) if load.jumping else line
+    return LoadLines(line.force, "")
+
+
+def over_theta_at(loads: Mapping[str, Load], theta: Array) -> dict[str, Any]:
+    """Values and derivatives at crank angles of the loads over them."""
+    found: dict[str, Any] = {}
+    for name, load in loads.items():
+        if isinstance(load, OverTheta):
+            for key, values in zip((name, f"{name}_by_theta"), load.both(theta.reshape(-1)), strict=True):
+                found[key] = values.reshape(theta.shape)
+    return found
