@@ -1,4 +1,4 @@
-"""`python -m derive`: write generated/, or check that it is fresh, or report what each pass saved."""
+"""`python -m derive`: write generated/, or check that it is fresh, or report seconds and sizes."""
 
 import argparse
 import sys
@@ -25,7 +25,7 @@ def main(arguments: list[str] | None = None) -> int:
         "--check", action="store_true", help="build in memory, compare, exit 1 on a difference"
     )
     parser.add_argument(
-        "--report", action="store_true", help="operations before and after each pass, per quantity"
+        "--report", action="store_true", help="seconds and sizes of modules, operations of quantities by pass"
     )
     parser.add_argument("-o", "--output", type=Path, help="another folder than generated/")
     options = parser.parse_args(arguments)

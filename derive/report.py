@@ -1,30 +1,46 @@
-"""`python -m derive --report`: operations before and after each pass, per quantity."""
+"""`python -m derive --report`: seconds and sizes of each module, operations of each quantity by pass."""
 
 from collections.abc import Mapping
+from time import perf_counter
 
 from desaxe.compiler.cost import cost_of
+from desaxe.compiler.languages.numba.library import emit_folder
 from desaxe.compiler.passes.pipeline import PASSES, optimise_in_steps
 from desaxe.compiler.passes.slicing import keep_outputs
 from desaxe.compiler.passes.trigonometry import expand_trigonometry
 from desaxe.support.text_table import table
 
 from .build import Derivation
+from .groups import GROUPS, Group
 from .quantities import QUANTITIES
+from .write import module_of
 
 GENERAL = {"branch": 1.0}
 CONCENTRIC = {"branch": 1.0, "ec": 0.0, "alpha": 0.0}
 
 
 def report(derivation: Derivation) -> str:
-    """Operations after each pass, per quantity, in general and for a concentric crank at constant speed."""
+    """The modules; operations of each quantity after each pass, in general and for a concentric crank."""
     whole, frozen = cost_of(derivation.program).operations, cost_of(derivation.frozen).operations
     parts = [f"as frozen {frozen} operations; same values merged {whole}, for {len(derivation.names)} names"]
+    titles = ["module", "seconds", "lines", "results", "operations", "with wide margins"]
+    parts.append("\nmodules:\n" + _table(titles, [_module(derivation, group) for group in GROUPS]))
     for title, fixed in (("branch = 1", GENERAL), ("branch = 1, ec = 0, alpha = 0", CONCENTRIC)):
         rows = [_row(derivation, name, fixed) for name in QUANTITIES]
         steps = ["sliced", *(step.name for step in PASSES)]
         titles = ["quantity", *steps, "depth", "sin, cos written out", "with its sensitivities"]
         parts.append(f"\noperations with {title}:\n" + _table(titles, rows))
     return "\n".join(parts)
+
+
+def _module(derivation: Derivation, group: Group) -> list[object]:
+    start = perf_counter()
+    module, docstring = module_of(derivation, group, "")
+    text = emit_folder({group.name: (module, docstring)}, "", derivation.trigonometry)[group.name]
+    seconds = f"{perf_counter() - start:.2f}"
+    programs = module.forms.stable, module.forms.plain
+    sizes = [cost_of(program).operations for program in programs if program is not None]
+    return [group.name, seconds, len(text.splitlines()), len(group.outputs), *sizes]
 
 
 def _row(derivation: Derivation, name: str, fixed: Mapping[str, float]) -> list[object]:

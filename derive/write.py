@@ -76,7 +76,7 @@ def render(derivation: Derivation) -> dict[str, str]:
         "index.py": _index(derivation, digest),
         "trigonometry.py": _trigonometry(derivation, digest),
     }
-    modules = {group.name: _group(derivation, group, digest) for group in GROUPS}
+    modules = {group.name: module_of(derivation, group, digest) for group in GROUPS}
     kernels = emit_folder(modules, _banner(_HELPERS, digest), derivation.trigonometry)
     return files | {f"{name}.py": text for name, text in kernels.items()}
 
@@ -177,7 +177,7 @@ def _trigonometry(derivation: Derivation, digest: str) -> str:
     return f'"""{_banner(what, digest)}"""\n\n' + "\n".join(texts)
 
 
-def _group(derivation: Derivation, group: Group, digest: str) -> tuple[Module, str]:
+def module_of(derivation: Derivation, group: Group, digest: str) -> tuple[Module, str]:
     """A module of kernels, and its docstring."""
     stable, plain = (
         optimise(assume(_cut(derivation.program, group.outputs), {"wide_margins": wide}), dict(group.fixed))

@@ -1,14 +1,18 @@
 """`python -m derive --report`: what each pass leaves, for every quantity."""
 
 from functools import cache
+from pathlib import Path
 
 import pytest
 
 from desaxe.compiler.passes.pipeline import PASSES, optimise_in_steps
 from desaxe.compiler.passes.slicing import keep_outputs
+from desaxe.derive.groups import GROUPS
 from desaxe.derive.quantities import QUANTITIES
 from desaxe.derive.report import CONCENTRIC, GENERAL, report
 from tests.derive.derived import derivation
+
+ROOT = Path(__file__).parents[2]
 
 
 @cache
@@ -37,6 +41,16 @@ def test_every_pass_has_a_column():
 def test_the_counts_are_those_of_the_pipeline(table, fixed):
     _, steps = optimise_in_steps(keep_outputs(derivation().program, ("a_C",)), fixed)
     assert rows("a_C")[table][1 : len(steps) + 1] == [str(step.cost.operations) for step in steps]
+
+
+def test_each_module_has_its_seconds_and_sizes():
+    for group in GROUPS:
+        ((name, seconds, size, results, *operations),) = rows(group.name)
+        text = (ROOT / "generated" / f"{name}.py").read_text(encoding="utf-8")
+        assert float(seconds) > 0.0
+        assert (int(size), int(results)) == (len(text.splitlines()), len(group.outputs))
+        stable, plain = map(int, operations)
+        assert plain < stable
 
 
 def test_the_whole_program_comes_first():

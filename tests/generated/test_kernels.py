@@ -14,12 +14,17 @@ import mpmath
 import numpy as np
 import pytest
 from desaxe.derive.groups import GROUPS
+from desaxe.derive.write import module_of
 from desaxe.generated.program import law
 
 import desaxe as dx
+from desaxe.compiler.lowering import Limits, guarded_for_loops, nest_of_two_forms
 from desaxe.mechanism.constants import constants
 from desaxe.mechanism.program import _text
+from desaxe.runtime.executor import CompiledKernel
 from tests.compiler.programs import LINKS, LOADS
+from tests.derive.derived import derivation
+from tests.effort import cases
 
 ROOT = Path(__file__).parents[2]
 NAMES = [group.name for group in GROUPS]
@@ -72,6 +77,28 @@ def test_a_kernel_gives_what_evaluate_gives(group, branch):
         assert np.isnan(wanted[name]).any() or found[name].dtype == np.int8
         scale = np.nanmax(np.abs(wanted[name]))
         np.testing.assert_allclose(found[name], wanted[name], rtol=1e-11, atol=1e-13 * scale, err_msg=name)
+
+
+@pytest.mark.parametrize("group", GROUPS, ids=lambda group: group.name)
+def test_both_ways_to_machine_code_have_the_same_bits(group):
+    """The lines of a module by numba, and by the executor of the library: next to change points, too."""
+    count, rng = cases(1_500, 20_000), np.random.default_rng(7)
+    columns = {n: c for n, c in points(count).items()}
+    columns["BC"][::2] = (columns["AB"] + np.abs(columns["ec"]))[::2] * (1.0 + 10.0 ** rng.uniform(-16, -1, count)[::2])
+    module, _ = module_of(derivation(), group, "")
+    columns = {n: columns[n] for n in (symbol.name for symbol in module.inputs)}
+    stable, plain = (
+        guarded_for_loops(program, (), Limits({}), constants()) for program in (module.forms.stable, module.forms.plain)
+    )
+    kernel = nest_of_two_forms(plain, stable, module.forms.test, len(group.outputs), dict.fromkeys(columns, 0), 1)
+    outs = [np.empty(count, module_kind(group, name)) for name in group.outputs]
+    CompiledKernel(kernel).run(columns | {"branch": 1.0}, outs)
+    for name, found, bits in zip(group.outputs, evaluate(group.name, **columns).values(), outs, strict=True):
+        np.testing.assert_array_equal(found, bits, err_msg=name)
+
+
+def module_kind(group, name):
+    return import_module(f"desaxe.generated.{group.name}").OUTPUTS[name]
 
 
 @pytest.mark.parametrize("group", NAMES)
