@@ -14,7 +14,7 @@ ANGLES = np.arange(0.0, 720.0, 10.0)
 
 
 def pressure(theta):
-    """Of a four-stroke engine that fires at 370 degrees."""
+    """The pressure in a four-stroke engine that fires at 370 degrees."""
     return AMBIENT + 4e6 * np.exp(-(((np.rad2deg(theta) - 370.0) / 30.0) ** 2))
 
 
