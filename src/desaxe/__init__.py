@@ -101,6 +101,7 @@ PUBLIC = {
 WARN_OF_SLIPS = (
     "evaluate", "function", "grid", "peak", "inverse", "enclose", "design_map", "events", "optimize",
     "steady", "tolerance", "harmonics", "counterweight", "drive", "fit", "feasibility", "simulate", "sweep",
+    "synthesize", "explore", "crossings", "solve",
 )  # fmt: skip
 MODULES = {"plot": "desaxe.plot", "status": "desaxe.mechanism.status", "units": "desaxe.units"}
 

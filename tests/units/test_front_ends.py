@@ -1,5 +1,6 @@
 """Every front end reads one input to one number, refuses it in one sentence, and warns of one slip."""
 
+import inspect
 import io
 import json
 import math
@@ -382,6 +383,17 @@ def test_what_may_be_meant_is_no_slip(reader, inputs):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         WARNING[reader](first, inputs[first], **{name: inputs[name] for name in others})
+
+
+def test_every_function_with_inputs_looks_for_slips():
+    functions = {name: getattr(dx, name) for name in dx.PUBLIC if inspect.isfunction(getattr(dx, name))}
+    signatures = {name: inspect.signature(function).parameters for name, function in functions.items()}
+    with_inputs = {
+        name
+        for name, known in signatures.items()
+        if "AB" in known or any(one.kind is one.VAR_KEYWORD for one in known.values())
+    }
+    assert with_inputs - {"define"} == {n for n, f in functions.items() if f.__module__ == "desaxe"}
 
 
 def test_a_function_warns_once_of_each_kind():
