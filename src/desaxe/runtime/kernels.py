@@ -70,19 +70,6 @@ def _pays_to_ask(columns: Mapping[str, Any], axis_of: Mapping[str, int]) -> bool
     return bool(lengths * ASKED_AHEAD <= prod(sizes.values()))
 
 
-def has_large_angles(angles: Any) -> bool:
-    """True if an angle is beyond what the written-out sine and cosine reduce exactly."""
-    with IMPORTS:
-        import numpy as np
-
-    limit = constants().limit
-    # Where their squares add up to less, none is. No test is quicker, and this one starts no threads.
-    if np.einsum("i,i->", angles, angles) < 0.5 * limit * limit:
-        return False
-    sizes = np.abs(angles)
-    return bool(np.any((sizes > limit) & (sizes < np.inf)))
-
-
 def _is_seen(program: Program, angle: str) -> bool:
     """True if an invalid value may reach other lines than sine and cosine, which turn it into NaN."""
     types = {line.name: line.type for line in program.lines}

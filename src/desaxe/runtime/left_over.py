@@ -18,6 +18,16 @@ from .kernels import REACH, SPARE, KernelKey, has_near_limit
 AT_A_TIME = 2**20  # points
 
 
+def has_large_angles(angles: Any) -> bool:
+    """True if an angle is beyond what the written-out sine and cosine reduce exactly."""
+    limit = limit_of("standard")
+    # Where their squares add up to less, none is. No test is quicker, and this one starts no threads.
+    if np.einsum("i,i->", angles, angles) < 0.5 * limit * limit:
+        return False
+    sizes = np.abs(angles)
+    return bool(np.any((sizes > limit) & (sizes < np.inf)))
+
+
 def settle(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> None:
     """Answer the points again that a call of a key's kernel left over."""
     if has_near_limit(key):

@@ -23,7 +23,8 @@ from ...mechanism.own import using
 from ...mechanism.program import digest
 from ...mechanism.quantity_units import UnitSystem
 from ...runtime.executor import is_ready
-from ...runtime.kernels import KernelKey, has_large_angles, kernel_of
+from ...runtime.kernels import KernelKey, kernel_of
+from ...runtime.left_over import has_large_angles
 from ...runtime.request import Request
 from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available
