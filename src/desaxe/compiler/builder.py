@@ -132,13 +132,6 @@ def quoted(value: object) -> str:
     return repr(value).replace("'", '"')
 
 
-def renamed(text: str, names: Mapping[str, str], called: bool = False) -> str:
-    """Replace whole words in a text; with `called` only where a call follows."""
-    words = "|".join(sorted(map(re.escape, names), key=len, reverse=True))
-    pattern = re.compile(rf"\b({words})\b" + (r"(?=\()" if called else ""))
-    return pattern.sub(lambda match: names[match[1]], text)
-
-
 def rebound(module: ModuleType, scope: Mapping[str, Any]) -> dict[str, Any]:
     """The names of a module, with those of `scope` in their places, for its functions, too."""
     names = vars(module) | dict(scope)

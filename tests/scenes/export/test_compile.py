@@ -6,8 +6,10 @@ import pickle
 import re
 import subprocess
 import sys
+from fractions import Fraction
 from pathlib import Path
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -225,6 +227,31 @@ def test_peaks_of_a_scene(tmp_path):
         module.peak_absmax_a_C(ec=[0.0, 0.23])
     text = (tmp_path / "peak_kernels.py").read_text(encoding="utf-8")
     assert "    peak_max_a_C(): maximum of a_C [m/s^2]" in text
+
+
+def test_reductions_skip_nan_take_the_first_of_equals_and_keep_any_scale(tmp_path):
+    """Rows of numbers that no scene has, by the functions of a written module, against exact sums."""
+    module = imported(dx.compile(REDUCED, tmp_path / "kernels_rows.py"))
+    rows = np.array([
+        [3.0, -3.0, math.nan, 3.0], [math.nan] * 4, [-math.inf, math.nan, -math.inf, -math.inf],
+        [1e200, -2e200, 1e200, 0.0], [1e-200, 3e-200, 0.0, 2e-200], [1e16, 1.0, -1e16, 1.0],
+    ])  # fmt: skip
+    places = np.array([0.5, 1.5, 2.5, 3.5])
+    found = module.reductions("x", rows, "theta", places, ("max", "min", "absmax", "mean", "rms"))
+    for k, row in enumerate(rows.tolist()):
+        good = [(value, place) for value, place in zip(row, places, strict=True) if value == value]
+        assert found["x_skipped"][k] == len(row) - len(good)
+        for kind, score in (("max", float), ("min", lambda x: -x), ("absmax", abs)):
+            value, place = max(good, key=lambda pair: score(pair[0]), default=(math.nan, math.nan))
+            value = abs(value) if kind == "absmax" else value
+            np.testing.assert_array_equal(
+                [found[f"x_{kind}"][k], found[f"x_{kind}_theta"][k]], [value, place]
+            )
+        if good and np.isfinite([value for value, _ in good]).all():
+            values = [Fraction(value) for value, _ in good]
+            square = mpmath.mpf(sum(v * v for v in values).numerator) / sum(v * v for v in values).denominator
+            assert found["x_mean"][k] == pytest.approx(float(sum(values) / len(values)), rel=1e-15)
+            assert found["x_rms"][k] == pytest.approx(float(mpmath.sqrt(square / len(values))), rel=1e-15)
 
 
 # ---- the text ------------------------------------------------------------------------------------

@@ -16,6 +16,7 @@ from numpy import (
     broadcast_to,
     concatenate,
     empty,
+    errstate,
     float64,
     frexp,
     inf,
@@ -82,7 +83,8 @@ def reductions(name, rows, along, places, kinds):
     for kind in kinds:
         if kind in ("mean", "rms"):
             values = where(good, rows, 0.0)
-            mean = exact_mean(values, count) if kind == "mean" else root_mean_square(values, count)
+            with errstate(all="ignore"):  # infinities
+                mean = exact_mean(values, count) if kind == "mean" else root_mean_square(values, count)
             found[f"{name}_{kind}"] = where(count > 0, mean, nan)
             continue
         score = abs(rows) if kind == "absmax" else -rows if kind == "min" else rows

@@ -12,8 +12,6 @@ from pathlib import Path
 from ...builder import HELPERS, MATH, Parts, with_sources
 
 NJIT = '@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)\n'
-# Where people may call what is written as plain Python, too: without its wrapper that would crash.
-CALLABLE = '@njit(error_model="numpy")\n'
 SOURCES = Path(__file__).with_name("sources")
 FILES = tuple(SOURCES / f"{name}.py" for name in ("spellings", "rooms", "given"))
 # Where the names come from that stand in the text of Programs and loops.
