@@ -101,9 +101,10 @@ _NUMBA = frozenset((
     # imported
     "Any", "ThreadPoolExecutor", "annotations", "append", "arange", "arcsinh", "argmax", "array", "asarray",
     "ascontiguousarray", "atan2", "broadcast_shapes", "broadcast_to", "can_cast", "concatenate", "copysign",
-    "copyto", "cos", "cpu_count", "empty", "errstate", "exp", "fabs", "float64", "floor", "fmax", "frexp", "inf",
-    "int64", "int8", "intrinsic", "isfinite", "ldexp", "linspace", "log", "nan", "ndarray", "njit", "overload", "pi",
-    "pow", "prod", "sin", "sinh", "sqrt", "take_along_axis", "types", "uint64", "unique", "where", "zeros",
+    "copyto", "cos", "cpu_count", "empty", "errstate", "exp", "fabs", "float64", "floor", "fmax", "frexp",
+    "inf", "int64", "int8", "intrinsic", "isfinite", "ldexp", "linspace", "log", "nan", "ndarray", "njit",
+    "overload", "pi", "pow", "prod", "sin", "sinh", "sqrt", "take_along_axis", "types", "uint64", "unique",
+    "where", "zeros",
     # defined
     "AXES", "BLOCK", "INPUTS", "OUTPUTS", "UNITS", "block", "compiled", "evaluate", "fill", "fill_rows",
     "formulas", "grid", "has_wide_margins", "plain", "point", "reduced", "run", "spaced", "stable",
