@@ -211,6 +211,7 @@ def test_example_call():
     return values | {"printed": [*call, *call[1:]]}
 
 
+@pytest.mark.filterwarnings("ignore::desaxe.UnitWarning")
 @proves("A-claim-unit", "not reproducible")
 def test_unit_comes_from_the_lengths():
     in_millimetres = CASE._replace(AB=1000 * CRANK, BC=1000 * ROD)
