@@ -17,7 +17,6 @@ starts       cold starts
 report       docs/benchmarks.md and the table of docs/measured.md
 picture      the pictures of that page
 startup      first calls and second processes; `python -m benchmarks.startup` alone
-steps        `python -m benchmarks.steps`: the worst error of many motions beside the usual one
 tolerances   `python -m benchmarks.tolerances`: errors of motions beside the tolerance asked for
 scale        `python -m benchmarks.scale`: sweeps
 """

@@ -21,14 +21,14 @@ def test_a_load_of_a_machine_is_called_in_its_units():
     assert dx.over_Y([0.2, 0.4], [0.0, -80e3])(0.3) == pytest.approx(-40e3)
 
 
-@pytest.mark.parametrize("method", ["energy", "DOP853"])
-def test_it_is_the_same_load_in_every_call(method):
+@pytest.mark.parametrize("mu", [0.0, 0.1], ids=["energy", "panels"])
+def test_it_is_the_same_load_in_every_call(mu):
     torque = PRESS.over_theta([0, 180], ["9 kN m", "8 kN m"])
     plain = dx.over_theta(["0 deg", "180 deg"], ["9 kN m", "8 kN m"])
     die = dx.over_Y(["200 mm", "380 mm"], ["0 kN", "-80 kN"])
     design = {"AB": 0.075, "BC": 0.3, "ec": 0.015, "I_crank": 2.0, "t_end": 0.1, "times": [0.0, 0.1]}
     own, other = (
-        dx.simulate(torque=push, F_Y=load, method=method, **design)["theta"][-1]
+        dx.simulate(torque=push, F_Y=load, mu=mu, **design)["theta"][-1]
         for push, load in ((torque, PRESS.over_Y([200, 380], [0, -80])), (plain, die))
     )
     assert own == other

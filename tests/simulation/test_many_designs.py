@@ -16,6 +16,7 @@ from desaxe.simulation.coordinate import EDGE
 from desaxe.simulation.loops import motions, nodes, state
 from desaxe.simulation.loops.compiled import DesignFamily, source_of
 from tests.motions import true_end
+from tests.simulation.by_time import by_time
 from tests.simulation.test_simulate import CRANK, LOADED, PRESS, ROCKER
 
 ECS = np.array([-0.1, 0.0, 0.06, 0.12])
@@ -28,7 +29,7 @@ def one(result, row):
 
 def alone(design, t, **more):
     """The histories of a design on its own, by the integrator."""
-    found = dx.simulate(t_end=t[-1], times=t, method="DOP853", **{**design, **more})
+    found = by_time(t_end=t[-1], times=t, **{**design, **more})
     return found, [found[name] for name in ("theta", "omega", "alpha")]
 
 
@@ -187,10 +188,6 @@ def test_designs_that_rub_or_stop_at_an_angle_are_each_alone(more):
 @pytest.mark.parametrize(
     ("change", "error", "message"),
     [
-        ({"mu": 0.1, "method": "panels"}, ValueError, "method = 'panels': it is for loads that are numbers"),
-        ({"until": 3.0, "max_step": 0.1, "method": "energy"}, ValueError, "max_step= is for an integrator"),
-        ({"atol": 1e-9}, ValueError, "atol= is for one design at a time"),
-        ({"method": "Radau"}, ValueError, "method= is for one design at a time"),
         ({"torque": [1.0, 2.0]}, ValueError, "the shapes do not broadcast together"),
         ({"torque": ["3 N"] * 4}, ValueError, "torque = '3 N': it must be a quantity in N m"),
         ({"torque": [None] * 4}, TypeError, "torque: expected real numbers"),

@@ -19,9 +19,9 @@ def test_long_simulations_tell_what_is_done(kind, monkeypatch):
         assert options == {"unit": "designs"}
         yield lambda *told: seen.append(told)
 
-    monkeypatch.setattr(f"desaxe.simulation.{kind}_design{'s' * (kind == 'many')}.progress_bar", recorded)
-    monkeypatch.setattr("desaxe.simulation.many_designs.LARGE", 20)
-    monkeypatch.setattr("desaxe.simulation.many_designs.LONGEST_BLOCK", 8)
+    monkeypatch.setattr("desaxe.simulation.rows.progress_bar", recorded)
+    monkeypatch.setattr("desaxe.simulation.rows.LARGE", 20)
+    monkeypatch.setattr("desaxe.simulation.rows.LONGEST_BLOCK", 8)
     torque = 1.0 if kind == "many" else dx.over_omega([0.0, 50.0], [1.0, 0.0])
     dx.simulate(torque=torque, t_end=0.01, **DESIGN)
     done = [told[0] for told in seen]

@@ -9,6 +9,7 @@ import pytest
 import desaxe as dx
 from tests.effort import cases
 from tests.motions import true_slopes
+from tests.simulation.by_time import by_time
 
 PRESS = {
     "AB": 0.14, "BC": 0.31, "ec": 0.06, "m_crank": 0.7637, "m_rod": 1.559464, "m_slider": 1.95025,
@@ -242,7 +243,7 @@ def test_the_work_where_a_torque_jumps_just_before_a_limit_angle():
     """At .7956 rad: the integrator's last panel starts with the jump; the energy form has no such panel."""
     torque = dx.over_theta([-1.0, 0.78, 1.5], [0.25, 3.0, 0.25], kind="step")
     call = {"t_end": 1.0, "theta0": 0.3, "omega_start": 9.0, "wrt": ["AB", "theta0"], **ROCKER}
-    ours, theirs = (dx.simulate(torque=torque, method=m, **call) for m in ("DOP853", "energy"))
+    ours, theirs = (simulate(torque=torque, **call) for simulate in (by_time, dx.simulate))
     assert ours["status"] == theirs["status"] == 2
     for p in call["wrt"]:
         assert ours[f"work_wrt_{p}"] == pytest.approx(theirs[f"work_wrt_{p}"], rel=1e-5)
@@ -346,7 +347,7 @@ def test_an_array_of_designs_has_those_of_each():
     call = {"torque": 0.25, "t_end": 0.3, "times": [0.1, 0.3], "omega_start": 2.0, "wrt": wrt}
     found = dx.simulate(**call, **{**PRESS, "m_slider": masses})
     for at in ((0, 0), (0, 1), (1, 0)):
-        one = dx.simulate(**call, method="DOP853", **{**PRESS, "m_slider": masses[at]})
+        one = by_time(**call, **{**PRESS, "m_slider": masses[at]})
         for p in wrt:
             for key in (f"theta_wrt_{p}", f"omega_wrt_{p}", f"t_last_wrt_{p}", f"work_wrt_{p}"):
                 np.testing.assert_allclose(found[key][at], one[key], rtol=1e-8, atol=1e-12)

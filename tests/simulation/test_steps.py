@@ -1,14 +1,12 @@
 """No bad step is accepted, where one error estimate vanishes by accident."""
 
-import re
-
 import numpy as np
 import pytest
 
 import desaxe as dx
-from benchmarks.steps import designs, spread
 from tests.effort import cases
 from tests.motions import true_end
+from tests.simulation.by_time import by_time
 
 ISSUE = {
     "AB": 0.11988839743156843, "BC": 0.32893073102304915, "ec": 0.0061792077930540226, "m_crank": 0.5,
@@ -16,6 +14,19 @@ ISSUE = {
     "r_rod": 0.11, "F_X": 7.0, "F_Y": -50.0, "g_X": 3.0, "g_Y": -9.81,
 }  # fmt: skip
 START = {"torque": 1.5, "theta0": 0.3, "omega_start": 20.0}
+
+
+def designs(count, seed):
+    """Random cranks that speed up to some 50 to 500 rad/s."""
+    rng = np.random.default_rng(seed)
+    AB = rng.uniform(0.05, 0.15, count)
+    BC = AB * rng.uniform(2.0, 4.0, count)
+    return {
+        "AB": AB, "BC": BC, "ec": (BC - AB) * rng.uniform(-0.5, 0.5, count),
+        "m_slider": rng.uniform(0.3, 3.0, count), "m_crank": 0.5, "m_rod": 0.8, "I_crank": 6e-4,
+        "I_rod": 7e-3, "F_Y": -50.0, "g_X": 3.0, "g_Y": -9.81,
+        "torque": 1.5, "theta0": 0.3, "omega_start": 20.0,
+    }  # fmt: skip
 
 
 @pytest.mark.thorough
@@ -27,15 +38,6 @@ def test_a_step_where_one_estimate_vanishes():
             found = dx.simulate(t_end=1.0, rtol=rtol, times=[1.0], **START, **design)
             assert abs(found["theta"].item() - theta) < rtol
             assert abs(found["omega"].item() - omega) < 100.0 * rtol
-
-
-@pytest.mark.sampled
-@pytest.mark.parametrize("power", [4, 5, 6, 8, 10])
-def test_the_worst_error_beside_the_usual_one(power):
-    """With one estimate alone some are thousands of times worse."""
-    found = spread(designs(cases(200, 1_000, 10_000), seed=11), 10.0**-power)
-    assert found["theta"].ratio <= 100.0
-    assert found["omega"].ratio <= 100.0
 
 
 @pytest.mark.thorough
@@ -54,24 +56,19 @@ def fast(t, theta, omega):
 
 
 def test_an_unusual_energy_residual_ends_the_message(monkeypatch):
-    told = dx.simulate(t_end=1.0, rtol=1e-6, atol=1.0, **START, **ISSUE)
-    assert told["energy_residual"] > 1e-3
-    assert re.fullmatch(
-        r"reached t_end = 1 s; energy_residual 0\.0\d+: repeat with rtol = 1e-08", told["message"]
-    )
+    monkeypatch.setattr("desaxe.simulation.residual.TOLD", 1e-9)
+    told = dx.simulate(t_end=1.0, rtol=1e-6, **START | {"torque": fast}, **ISSUE)
+    worst = f"{told['energy_residual']:.2g}"
+    assert told["message"].startswith(f"reached t_end = 1 s; energy_residual {worst}: repeat with rtol")
     assert told["status"] == 0
-    load = dx.over_theta([0, 1, 2], [1.0, 2.0, 1.0], "linear")
-    each = dx.simulate(
-        t_end=0.2, rtol=1e-3, **START | {"torque": fast}, **ISSUE | {"F_Y": load, "ec": [0.0, 0.01]}
-    )
-    assert each["message"].endswith("in 2 of 2 designs: repeat with rtol = 1e-05")
-    monkeypatch.setattr("desaxe.simulation.residual.TOLD", 0.1)
+    two = START | ISSUE | {"torque": fast, "ec": [0.0, 0.01], "mu": 0.1}
+    each = dx.simulate(t_end=0.2, rtol=1e-3, **two)
+    assert "in 2 of 2 designs: repeat with rtol" in each["message"]
     some = designs(3, seed=4) | {"m_slider": [1.0, 2.0, np.nan]}
-    many = dx.simulate(t_end=0.2, rtol=1e-3, method="DOP853", **some)
+    many = by_time(t_end=0.2, rtol=1e-3, **some)
     assert many["status"].tolist() == [0, 0, 6]
     worst = f"{np.nanmax(many['energy_residual']):.2g}"
-    ends = f"; energy_residual {worst} at most, in 2 of 3 designs: repeat with rtol = 0.01"
-    assert many["message"].endswith(ends)
+    assert f"; energy_residual {worst} at most, in 2 of 3 designs: repeat with rtol" in many["message"]
 
 
 @pytest.mark.thorough

@@ -24,7 +24,7 @@ OTHERS = {
     **dict.fromkeys(("V_outward", "V_inward"), "m/s"),
     **dict.fromkeys(("theta0", "until", "phase", "angle", "theta_intervals"), "rad"),
     **dict.fromkeys(("omega_start", "omega_mean", "synchronous_speed"), "rad/s"),
-    **dict.fromkeys(("t", "t_end", "t_last", "times", "max_step", "period"), "s"),
+    **dict.fromkeys(("t", "t_end", "t_last", "times", "period"), "s"),
     **dict.fromkeys(
         (
             "torque", "torque_mean", "torque_rms", "torque_peak", "starting_torque", "flywheel_torque",

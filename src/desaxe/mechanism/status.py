@@ -196,7 +196,7 @@ class FitStatus(Status):
 class SimulationStatus(Status):
     """The status of a motion at its end: `simulate`.
 
-    Decided by `simulation/one_design.py`; of arrays by `simulation/many_designs.py` and `motions.py`.
+    Decided by `simulation/march.py`; of arrays by `simulation/rows.py`.
     """
 
     DONE = 0, "reached its end"

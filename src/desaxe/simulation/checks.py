@@ -22,10 +22,9 @@ from ..runtime.request import several
 from ..support.deadline import Deadline
 from ..support.shown import shown
 from .coordinate import FREE, Coordinate, arc_around, inside
-from .held import Held, UserLoad
-from .model import Actuation, Load, Model
+from .drive import ConstantCurve, Curve, FunctionCurve, curve_of
+from .model import Actuation, Model
 
-METHODS = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
 TIME_AND_CRANK = ("t", "theta", "omega")
 OWN = {"t", "theta", "omega", "alpha", "status"}  # keys of the result that no name may take
 LEAST_RTOL = 3e-14
@@ -79,31 +78,25 @@ def follows_the_slider(torque: Any) -> bool:
     return not set(arguments_of("torque", torque, ARGUMENTS)) <= set(TIME_AND_CRANK)
 
 
-def load(name: str, value: Any, unit: str, deadline: Deadline) -> Load:
-    """A torque or force as a function of (t, theta, omega), checked wherever it is called."""
+def curve(name: str, value: Any, unit: str, deadline: Deadline) -> Curve:
+    """A torque or force along the motion; a function is checked wherever it is called."""
     if not callable(value):
-        number = scalar(name, value, unit, limit="a finite number or a function")
-        return lambda t, theta, omega: number
+        return ConstantCurve(scalar(name, value, unit, limit="a finite number or a function"))
     if isinstance(value, Motor):
-        return lambda t, theta, omega: float(value.value(omega))
-    if isinstance(value, LoadOverMotion):
-        return Held(as_load(name, value))
-    arguments = arguments_of(name, value, ARGUMENTS)
-    if arguments == ("theta",):
-        return Held(as_load(name, value))
-    return UserLoad(name, value, arguments, unit, deadline)
+        return curve_of(value)
+    arguments = () if isinstance(value, LoadOverMotion) else arguments_of(name, value, ARGUMENTS)
+    if isinstance(value, LoadOverMotion) or arguments == ("theta",):
+        return curve_of(as_load(name, value))
+    return FunctionCurve(name, value, arguments, unit, deadline)
 
 
 def drive_of(torque: Any, F_X: Any, F_Y: Any, deadline: Deadline) -> Actuation:
     """Torque and forces; what is not given is 0. Functions are called within the time of a simulation."""
-    forces = (0.0 if F_X is None else F_X, 0.0 if F_Y is None else F_Y)
-    three = (
-        load("torque", torque, "N*m", deadline),
-        load("F_X", forces[0], "N", deadline),
-        load("F_Y", forces[1], "N", deadline),
+    return Actuation(
+        curve("torque", torque, "N*m", deadline),
+        curve("F_X", 0.0 if F_X is None else F_X, "N", deadline),
+        curve("F_Y", 0.0 if F_Y is None else F_Y, "N", deadline),
     )
-    steady = not any(map(callable, (torque, *forces)))
-    return Actuation(*three, steady, tuple(one for one in three if isinstance(one, Held)))
 
 
 def model_of(values: Mapping[str, float], branch: int, theta0: float, drive: Actuation) -> Model:
@@ -147,7 +140,7 @@ def _feasible(lengths: tuple[float, ...]) -> Message:
 
 
 def _check_inertia(model: Model, theta0: float) -> None:
-    inertia = model.inertia(theta0)
+    inertia = float(model.inertia(theta0))
     if isnan(inertia):
         start = "theta0 = " + amount("theta", theta0, "g")
         raise ValueError(start + ": the effective inertia is not finite there")
@@ -214,13 +207,6 @@ def read_wrt(wrt: Any, given: Mapping[str, Any]) -> tuple[str, ...]:
                 "desaxe.over_theta(f, derivative=...)"
             )
     return wanted
-
-
-def read_method(method: str) -> str:
-    """Check the method: the name of one of SciPy's integrators."""
-    if not isinstance(method, str) or method not in METHODS:
-        raise ValueError(f"method = {shown(method)}: it is one of energy, {', '.join(METHODS)}")
-    return method
 
 
 def read_rtol(rtol: Any) -> float:

@@ -7,8 +7,10 @@ theta = middle + half sin(q), that is a smooth passage through q = pi/2: dtheta/
 1/sqrt(M_eff) does, and beyond it the branch is the other one.
 """
 
-from math import asin, copysign, cos, inf, nextafter, pi, sin, sqrt
-from typing import NamedTuple
+from math import asin, inf, nextafter, pi, sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from ..mechanism.closed import TURN
 from ..mechanism.closed.functions import closed_form
@@ -29,12 +31,20 @@ class Coordinate(NamedTuple):
         """The angle halfway between the limits."""
         return 0.5 * (self.first + self.last)
 
-    def place(self, q: float) -> tuple[float, float, float]:
-        """theta, dtheta/dq and the sign of the branch at q."""
+    @property
+    def bounded(self) -> bool:
+        """True between limit angles."""
+        return self.first > -inf
+
+    def clamped(self, q: Any) -> Any:
+        """A crank angle, beyond a limit one just before it."""
+        return np.clip(q, self.first + EDGE, self.last - EDGE)
+
+    def theta(self, q: Any) -> Any:
+        """The crank angle at a coordinate, or at several."""
         if self.half:
-            slope = self.half * cos(q)
-            return self.middle + self.half * sin(q), slope, copysign(1.0, slope)
-        return min(max(q, self.first + EDGE), self.last - EDGE), 1.0, 1.0
+            return self.middle + self.half * np.sin(q)
+        return self.clamped(q) if self.bounded else q
 
     def q(self, theta: float) -> float:
         """The coordinate of a crank angle; measured from the nearer limit, so that no digit is lost."""

@@ -1,26 +1,31 @@
-"""Events inside a step of the integration: angles passed, standstills, kinks of friction."""
+"""Events inside a panel: angles passed, standstills, kinks of loads and of friction, on its series."""
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
-from math import ceil, copysign, floor, inf
+from math import ceil, copysign, floor, inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from ..mechanism.closed import TURN
 from ..mechanism.messages import Message, amount, named
-from ..support import roots
+from ..support.roots import root
 from .checks import SMALL
-from .equations import Law, state_of
-from .friction import JAMS_AT, Contact, Rubbing
+from .coordinate import Coordinate
+from .law import JAMS_AT
 from .model import Model
+from .panel import NODES, SERIES, Panel
 from .result import DONE, JAMS, LIMIT, NO_INERTIA
 
 Array = NDArray[np.float64]
-INSIDE = (0.25, 0.5, 0.75)  # of a step: where events are looked for besides its ends
-SHORT = 2e-3  # of q: so far from a limit angle S keeps ten digits
 NEAR = 1e-9  # rad: an angle that a stretch starts from is not reached at once
+AT_START = 1e-9  # of a panel: a root so near to a start with the value 0 is the start
+BEYOND = 1.15  # of a panel: so far its series reach a limit angle, next to which S has no digits
+ROUNDED = 1e-13  # of a series: less is none
+SAMPLES = np.linspace(-1.0, 1.0, 33)
+AT_SAMPLES = legendre.legvander(SAMPLES, NODES)
 Q, V, W = range(3)
 NEVER = -1  # of an event that does not end the motion
 
@@ -38,33 +43,17 @@ class Mark(NamedTuple):
 KINK = "kink of a load"  # where the integration starts again: no event to report
 STANDSTILL = Mark("standstill", 0.0)
 LOST = Mark("normal force", 0.0)  # it changes its side: no event to report, but a kink
+KNOT = Mark(KINK, 0.0, "speed")  # of a motor's table
 JAMMED = Mark("friction jams", 0.0, status=JAMS)
 
 
-class IntegrationStep(NamedTuple):
-    """A step just made: its law, start, state there, interpolant and end."""
-
-    law: Law
-    t: float
-    y: Array
-    inside: Callable[[Any], Array]
-    end: float
-
-
 class Crossing(NamedTuple):
-    """An event inside a step: when, what, and the coordinate with the value that it has there."""
+    """An event inside a panel: when, what, and the coordinate with the value that it has there."""
 
     t: float
     mark: Mark
     place: int = -1
     value: float = 0.0
-
-
-class Samples(NamedTuple):
-    """Instants of a step and the states there, one a row."""
-
-    t: list[float]
-    y: Array
 
 
 def angles_of(model: Model, until: Sequence[float]) -> list[Mark]:
@@ -84,67 +73,131 @@ def marks_of(model: Model, until: Sequence[float]) -> list[Mark]:
     first, last = model.coordinate.first, model.coordinate.last
     if first > -inf:
         marks += [Mark("limit", first, "first", status=LIMIT), Mark("limit", last, "last", status=LIMIT)]
-    for held in model.drive.held:
-        kinks = held.kinks(model.lengths, int(model.sign))
+    for curve in model.drive:
+        kinks = curve.kinks(model.lengths, model.branch)
         marks += [Mark(KINK, angle, every=period) for angle, period in kinks]
     return marks
 
 
+class SeriesOnPanel:
+    """A Legendre series on a panel, as a function of the part of it from 0 to 1."""
+
+    def __init__(self, series: Array) -> None:
+        self.series: Array = series
+        self.numbers: list[float] = series.tolist()
+
+    def __call__(self, s: float) -> float:
+        """The value, by Clenshaw's sum."""
+        x, numbers = 2.0 * s - 1.0, self.numbers
+        after, now = 0.0, numbers[-1]
+        for n in range(len(numbers) - 2, 0, -1):
+            after, now = now, numbers[n] + (2 * n + 1) / (n + 1) * x * now - (n + 1) / (n + 2) * after
+        result: float = numbers[0] + x * now - 0.5 * after
+        return result
+
+    def roots(self, starts_at_zero: bool = False) -> list[float]:
+        """The changes of sign behind the start."""
+        sizes = np.abs(self.series)
+        if sizes[0] > sizes[1:].sum():
+            return []
+        x: NDArray[Any] = SAMPLES
+        values = AT_SAMPLES[:, : self.series.size] @ self.series
+        if (np.abs(values[1:] + values[:-1]) < 4.0 * np.abs(np.diff(values))).any():
+            found = np.sort(legendre.legroots(legendre.legtrim(self.series, sizes.max() * 1e-17)).real)
+            found = found[(np.abs(found) < 1.0) & (found > -1.0 + 2.0 * AT_START * starts_at_zero)]
+            x = np.sort(np.concatenate([x, found, 0.5 * (found[1:] + found[:-1])]))
+            values = legendre.legval(x, self.series)
+        if starts_at_zero:
+            values[0] = 0.0
+        places = 0.5 * (x + 1.0)
+        changes = np.flatnonzero(values[1:] * values[:-1] < 0.0)
+        result = [self.root(float(places[k]), float(places[k + 1])) for k in changes]
+        result += places[1:][(values[1:] == 0.0) & (places[1:] > AT_START)].tolist()
+        if starts_at_zero and result and abs(self(0.5 * min(result))) < ROUNDED * float(sizes.sum()):
+            result.remove(min(result))  # it has not left the start yet
+        return sorted(result)
+
+    def root(self, a: float, b: float, value: float = 0.0) -> float:
+        """The part at which it has a value, between two; where it does not pass it, the nearer end."""
+        at_a, at_b = self(a) - value, self(b) - value
+        if at_a * at_b >= 0.0:
+            return a if abs(at_a) < abs(at_b) else b
+        return root(lambda s: self(s) - value, a, b)
+
+
+def along(panel: Panel, place: int) -> SeriesOnPanel:
+    """A coordinate along a panel."""
+    series = panel.series[place].copy()
+    series[0] += panel.y[place]
+    return SeriesOnPanel(series)
+
+
 def events_in(
-    step: IntegrationStep, model: Model, marks: list[Mark], left: float, heed: Callable[[], None]
+    panel: Panel, model: Model, marks: list[Mark], left: float, heed: Callable[[], None]
 ) -> list[Crossing]:
-    """All events of a step, in order; `left` is the angle that the stretch started from.
+    """All events of a panel, in order; `left` is the angle that the stretch started from.
 
     `heed` is called for each passage: it raises where the time for the simulation is over.
     """
-    samples = _sampled(step, [step.t + part * (step.end - step.t) for part in (0.0, *INSIDE)] + [step.end])
-    stops = _changes(step, V, samples)
-    if stops:  # what lies beyond one may be reached twice
-        samples = _sampled(step, sorted([*samples.t, *stops]))
-    found = [Crossing(stop, STANDSTILL, V) for stop in stops]
-    thetas = [model.coordinate.place(q)[0] for q in samples.y[:, Q].tolist()]
+    q = along(panel, Q)
+    stops = along(panel, V).roots(panel.y[V] == 0.0)
+    found = [(s, STANDSTILL, V, 0.0) for s in stops]
+    parts = [0.0, *stops, 1.0]  # between them the crank turns one way
+    places = [float(panel.y[Q]), *map(q, parts[1:])]
+    thetas = [float(model.coordinate.theta(place)) for place in places]
     for mark in marks:
-        for passage in _passages(step, model, mark, samples, thetas, left):
+        for passage in _passages(q, model, mark, parts, thetas, places, left):
             heed()
             found.append(passage)
         if mark.kind == "limit" and model.coordinate.half:
-            found += _just_ahead(step, model, mark)
-    if isinstance(step.law, Rubbing):
-        found += _kinks(step, step.law, model, samples)
-    return sorted(found, key=lambda event: event.t)
+            ahead, end = limit_ahead(panel, model.coordinate), model.coordinate.ends[mark.which == "last"]
+            if ahead is not None and q(BEYOND) * end > 0.0:
+                found.append((ahead, mark, Q, end))
+    found += [(s, KNOT, -1, 0.0) for s in _knots(panel, model)]
+    if panel.law.rubs:
+        found += _kinks(panel)
+    return sorted(
+        (Crossing(panel.start + s * panel.h, mark, place, value) for s, mark, place, value in found),
+        key=lambda event: event.t,
+    )
 
 
-def _sampled(step: IntegrationStep, instants: list[float]) -> Samples:
-    return Samples(instants, step.inside(np.array(instants)).T)
+Passage = tuple[float, Mark, int, float]
 
 
 def _passages(
-    step: IntegrationStep, model: Model, mark: Mark, samples: Samples, thetas: list[float], left: float
-) -> Iterator[Crossing]:
+    q: SeriesOnPanel,
+    model: Model,
+    mark: Mark,
+    parts: list[float],
+    thetas: list[float],
+    places: list[float],
+    left: float,
+) -> Iterator[Passage]:
     """The events at which the crank passes an angle; a limit angle is detected in the coordinate."""
     coordinate = model.coordinate
     limit = mark.kind == "limit"
-    rows = samples.y[:, Q].tolist() if limit else thetas
+    rows = places if limit else thetas
     value = coordinate.ends[mark.which == "last"] if limit else mark.angle
-    for k, ((a, b), times) in enumerate(zip(pairwise(rows), pairwise(samples.t), strict=True)):
+    for k, ((a, b), span) in enumerate(zip(pairwise(rows), pairwise(parts), strict=True)):
         for angle in _between(a, b, value, mark.every):
             if k == 0 and abs(angle - left) <= NEAR and not limit:
                 continue
-            q = angle if limit else coordinate.q(angle)
-            t = root(lambda t, there: float(step.inside(t)[Q]) - there, *times, q)
-            yield Crossing(t, mark, Q, q)
+            place = angle if limit else coordinate.q(angle)
+            yield q.root(*span, place), mark, Q, place
 
 
-def _just_ahead(step: IntegrationStep, model: Model, mark: Mark) -> Iterator[Crossing]:
-    """A limit angle so close ahead of a step that none can start there: it is read off the interpolant."""
-    end = model.coordinate.ends[mark.which == "last"]
-    before, now = (float(step.inside(t)[Q]) for t in (step.end - 1e-3 * (step.end - step.t), step.end))
-    gap = end - now
-    if not 0.0 < gap * copysign(1.0, end) < SHORT or gap * (now - before) <= 0.0:
-        return
-    far = step.end + 2e-3 * (step.end - step.t) * gap / (now - before)
-    if (end - float(step.inside(far)[Q])) * gap < 0.0:
-        yield Crossing(root(lambda t: float(step.inside(t)[Q]) - end, step.end, far), mark, Q, end)
+def limit_ahead(panel: Panel, coordinate: Coordinate) -> float | None:
+    """The part of a panel, a little beyond it, at which its series reach a limit angle."""
+    q = along(panel, Q)
+    end = copysign(coordinate.ends[1], q(BEYOND) - q(1.0))
+    return q.root(1.0, BEYOND, end) if (q(1.0) - end) * (q(BEYOND) - end) < 0.0 else None
+
+
+def growth(s: float) -> float:
+    """By how much the last terms of a series grow beyond its panel."""
+    x = 2.0 * s - 1.0
+    return float((x + sqrt(x * x - 1.0)) ** NODES)
 
 
 def _between(a: float, b: float, angle: float, every: float) -> list[float]:
@@ -156,42 +209,40 @@ def _between(a: float, b: float, angle: float, every: float) -> list[float]:
     return [value for value in (angle + every * k for k in counts) if value != a]
 
 
-def _changes(step: IntegrationStep, place: int, samples: Samples) -> list[float]:
-    """The events at which a coordinate changes its sign."""
-    pairs = zip(pairwise(samples.y[:, place].tolist()), pairwise(samples.t), strict=True)
-    return [root(lambda t: float(step.inside(t)[place]), *times) for (a, b), times in pairs if a * b < 0.0]
+def _knots(panel: Panel, model: Model) -> Iterator[float]:
+    """The parts of a panel at which the speed passes a knot of the motor's table."""
+    knots = model.drive.knots
+    if not knots or panel.rates is None:
+        return
+    series = SERIES @ panel.rates.omega
+    size = max(map(abs, knots))
+    start = float(series @ legendre.legvander(np.array([-1.0]), NODES - 1)[0])
+    for knot in knots:
+        own = series.copy()
+        own[0] -= knot
+        yield from SeriesOnPanel(own).roots(abs(start - knot) <= 1e-7 * size)
 
 
-def _kinks(step: IntegrationStep, law: Rubbing, model: Model, samples: Samples) -> Iterator[Crossing]:
+def _kinks(panel: Panel) -> Iterator[Passage]:
     """The first event at which the normal force changes sign or the friction jams."""
-
-    def guide(t: float) -> Contact:
-        q, v, _ = step.inside(t).tolist()
-        theta, omega, branch = state_of(model, q, v)
-        return law.at(t, theta, branch, omega)
-
-    def beyond(t: float, way: float) -> float:
-        """The excess of K sign(N) above 1 (no solution) or, for way -1, below -1 (two solutions)."""
-        return way * law.pressed * guide(t).wedge - JAMS_AT
-
-    contacts = [guide(t) for t in samples.t]
-    for (a, b), times in zip(pairwise(contacts), pairwise(samples.t), strict=True):
-        if law.pressed * b.normal_free < -b.noise:
-            within = law.pressed * a.normal_free > 0.0
-            yield Crossing(root(lambda t: guide(t).normal_free, *times) if within else times[0], LOST)
+    assert panel.rates is not None
+    assert panel.rates.guide is not None
+    guide, pressed = panel.rates.guide, panel.law.pressed
+    normal = SeriesOnPanel(SERIES @ (pressed * guide.normal_free))
+    values = AT_SAMPLES[:, :NODES] @ normal.series
+    lost = np.flatnonzero(values[1:] < -float(np.max(guide.noise)))  # at the start its sign is rounding
+    if lost.size:
+        before, parts = int(lost[0]), 0.5 * (SAMPLES + 1.0)
+        passed = values[before] > 0.0
+        part = normal.root(float(parts[before]), float(parts[before + 1])) if passed else float(parts[before])
+        yield part, LOST, -1, 0.0
+    for side in (1.0, -1.0):
+        series = SERIES @ (side * pressed * guide.wedge + np.zeros(NODES))
+        series[0] -= JAMS_AT
+        beyond = SeriesOnPanel(series).roots()
+        if beyond and beyond[0] > 0.0:
+            yield beyond[0], JAMMED, -1, 0.0
             return
-        for way in (1.0, -1.0):
-            if way * law.pressed * b.wedge > JAMS_AT >= way * law.pressed * a.wedge:
-                yield Crossing(root(beyond, *times, way), JAMMED)
-                return
-
-
-def root(function: Callable[..., float], a: float, b: float, *more: float) -> float:
-    """The root in a bracket, to the last digits; where there is no change of sign, the end nearer to one."""
-    at_a, at_b = function(a, *more), function(b, *more)
-    if at_a * at_b >= 0.0:
-        return a if abs(at_a) < abs(at_b) else b
-    return roots.root(lambda t: function(t, *more), a, b)
 
 
 # ---- in words -------------------------------------------------------------------------------------

@@ -1,22 +1,25 @@
-"""From the pieces of a motion to its histories: angle, speed, acceleration, quantities, energy."""
+"""From the panels of a motion to its histories: angle, speed, acceleration, quantities, energy."""
 
 from collections.abc import Callable, Mapping, Sequence
-from math import copysign, nan
+from math import copysign
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
-from .equations import Law, State, state_of
+from .drive import AngleCurve, ConstantCurve, Curve, PositionCurve
 from .events import Q, W
-from .held import Held
+from .law import state_of
+from .march import March
 from .model import Model
-from .one_design import MotionRun, Piece
+from .panel import NODES, Panel, basis
 from .residual import energy_residual, told_of
 from .result import FAILED, LIMIT, REST, SENSITIVITIES, Event, Simulation
 
 Array = NDArray[np.float64]
+FORCES = ("F_X", "F_Y")
+PANELS = "panels"
 SAMPLES = 1001  # instants of the histories by default
 
 
@@ -86,47 +89,76 @@ def instants_of(times: Any, end: float) -> Array:
     return np.asarray(np.linspace(0.0, end, SAMPLES) if times is None else times[times <= end])
 
 
-def integrated(run: MotionRun, names: Sequence[str], times: Any, given: Mapping[str, Any]) -> Simulation:
-    """The result of a motion of the integrator."""
+def integrated(run: March, names: Sequence[str], times: Any, given: Mapping[str, Any]) -> Simulation:
+    """The result of a motion by panels of time."""
     t = instants_of(times, run.t)
-    motion = Motion(run.model, run.pieces, run.events, run.status, run.t)
+    motion = Motion.of(run)
     theta, omega, alpha = motion.histories(t)
-    loads = {name: _along(given[name], t, theta, omega) for name in ("F_X", "F_Y") if name in given}
-    accepted = run.accepted[:-1] if run.status == LIMIT else run.accepted  # there Y has half its digits
-    residual, how = energy_residual(run.model, accepted), run.tolerance
-    told = run.t, run.status, run.message, run.events, how.method, how.rtol, *residual, float(run.y[W])
+    loads = {
+        name: _along(curve, t, theta, omega) for name, curve in zip(FORCES, run.model.drive[1:], strict=True)
+    }
+    residual = energy_residual(run)
+    told = run.t, run.status, run.message, run.events, PANELS, run.settings.rtol, *residual, float(run.y[W])
     return result_of(t, (theta, omega, alpha), Ended(*told, motion.states), names, {**given, **loads})
 
 
-class Motion(NamedTuple):
-    """The record of a run: enough to compute the state at any instant, and to be pickled."""
+class Motion:
+    """The record of a motion: enough to compute the state at any instant, and to be pickled."""
 
-    model: Model
-    pieces: list[Piece]
-    events: list[Event]
-    status: int
-    t: float
+    def __init__(
+        self, model: Model, panels: Sequence[Panel], events: list[Event], status: int, t: float
+    ) -> None:
+        self.model, self.events, self.status, self.t = model, events, status, t
+        self.start, self.h, self.stop = (
+            np.array([getattr(panel, name) for panel in panels]) for name in ("start", "h", "stop")
+        )
+        self.y = np.array([panel.y for panel in panels])
+        self.series = np.array([panel.series for panel in panels])
+        self.laws = [panel.law for panel in panels]
 
-    def histories(self, t: Array, without_alpha: bool = False) -> tuple[Array, Array, Array]:
-        """Angle, speed and acceleration at many instants."""
-        theta, omega, alpha = (np.full(t.shape, nan) for _ in range(3))
-        which = np.searchsorted([piece.stop for piece in self.pieces[:-1]], t)
-        for number in sorted(set(which.tolist())):
-            piece = self.pieces[number]
-            rows = np.flatnonzero(which == number)
-            for row, (q, v, _) in zip(rows.tolist(), piece.state(t[rows]).T.tolist(), strict=True):
-                state = state_of(self.model, q, v)
-                theta[row], omega[row] = state.theta, state.omega
-                if not without_alpha:
-                    alpha[row] = _acceleration(piece.law, float(t[row]), state)
-        if self.events and self.events[-1].t == self.t and self.status != FAILED:
-            _set_end(self, t, theta, omega, alpha)
+    @classmethod
+    def of(cls, run: March) -> "Motion":
+        """The record of a run."""
+        return cls(run.model, run.panels, run.events, run.status, run.t)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """A pickle has no laws, which may be any functions."""
+        return {**self.__dict__, "laws": []}
+
+    def at(self, t: Array) -> tuple[NDArray[np.intp], Array]:
+        """The panels of instants, and q, v and W there."""
+        which = np.searchsorted(self.stop[:-1], t)
+        s = (t - self.start[which]) / np.where(self.h[which] > 0.0, self.h[which], 1.0)
+        rows = basis(2.0 * s - 1.0, NODES)
+        moved = np.einsum("kt,tik->it", rows, self.series[which]) * (s != 0.0)
+        return which, self.y[which].T + moved
+
+    def histories(self, t: Array) -> tuple[Array, Array, Array]:
+        """Angle, speed and acceleration at instants."""
+        theta, omega = self.states(t)
+        which, alpha = np.searchsorted(self.stop[:-1], t), np.empty(t.shape)
+        changes = [0, *(k for k in range(1, len(self.laws)) if self.laws[k] is not self.laws[k - 1])]
+        stretch = np.searchsorted(changes, which, side="right") - 1
+        for number in np.unique(stretch).tolist():
+            rows = np.flatnonzero(stretch == number)
+            alpha[rows] = self.laws[changes[number]].alpha(t[rows], theta[rows], omega[rows])
+        if self._at_event:
+            _set_end(self, t, alpha)
         return theta, omega, alpha
 
     def states(self, t: Array) -> tuple[Array, Array]:
-        """Angle and speed at many instants."""
-        theta, omega, _ = self.histories(t, without_alpha=True)
+        """Angle and speed at instants."""
+        state = state_of(self.model, *self.at(t)[1][:W])
+        theta, omega = state.theta.copy(), state.omega.copy()
+        if self._at_event:
+            ends = t >= self.t
+            theta[ends], omega[ends] = self.events[-1].theta, self.events[-1].omega
         return theta, omega
+
+    @property
+    def _at_event(self) -> bool:
+        """True where an event ends the motion: its angle and speed are exact."""
+        return bool(self.events) and self.events[-1].t == self.t and self.status != FAILED
 
 
 class Solution:
@@ -149,34 +181,23 @@ class Solution:
         return f"solution(t) -> theta, omega; t from 0 to {self.t_last:.6g} s"
 
 
-def _acceleration(law: Law, t: float, state: State) -> float:
-    """The crank's acceleration; at rest under the load of the way in which it starts."""
-    alpha = law.alpha(t, state.theta, state.omega or 0.0)
-    return law.alpha(t, state.theta, -0.0) if alpha < 0.0 and not state.omega else alpha
+def _set_end(motion: Motion, t: Array, alpha: Array) -> None:
+    """Set the acceleration at the event that ends a motion.
 
-
-def _set_end(run: Motion, t: Array, theta: Array, omega: Array, alpha: Array) -> None:
-    """Set the end of the histories to the event that ends the motion, not to the interpolant.
-
-    At a limit angle itself M_eff is infinite: there theta'' = -half sin(q) q'^2. What rests
-    has no acceleration.
+    At a limit angle itself M_eff is infinite: there theta'' = -half sin(q) q'^2. What rests has none.
     """
-    ends = np.flatnonzero(t >= run.t)
-    if run.status == REST:
+    ends = np.flatnonzero(t >= motion.t)
+    if motion.status == REST:
         alpha[ends] = 0.0
-    theta[ends], omega[ends] = run.events[-1].theta, run.events[-1].omega
-    if run.status == LIMIT and run.model.coordinate.half:
-        last = run.pieces[-1]
-        step = 1e-4 * (last.stop - last.start)
-        q, before = last.state(np.array([run.t, run.t - step]))[Q]
-        alpha[ends] = -run.model.coordinate.half * copysign(1.0, q) * ((q - before) / step) ** 2
+    half = motion.model.coordinate.half
+    if motion.status == LIMIT and half:
+        step = 1e-4 * float(motion.stop[-1] - motion.start[-1])
+        q, before = motion.at(np.array([motion.t, motion.t - step]))[1][Q]
+        alpha[ends] = -half * copysign(1.0, q) * ((q - before) / step) ** 2
 
 
-def _along(load: Any, t: Array, theta: Array, omega: Array) -> Any:
-    """A load at every instant of a history."""
-    if isinstance(load, Held):
-        return load.load  # `evaluate` knows its slope
-    if not callable(load):
-        return load
-    now = zip(t.tolist(), theta.tolist(), omega.tolist(), strict=True)
-    return np.array([load(*instant) for instant in now])
+def _along(curve: Curve, t: Array, theta: Array, omega: Array) -> Any:
+    """A load at every instant of a history; one that `evaluate` knows as it is, with its slope."""
+    if isinstance(curve, (AngleCurve, PositionCurve)):
+        return curve.load
+    return curve.value if isinstance(curve, ConstantCurve) else curve.at(t, theta, omega)

@@ -1,104 +1,143 @@
-"""A design as plain functions of its state, cut from the generated Program."""
+"""A design as functions of its state, by prepared functions of the package."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
+from functools import lru_cache
 from math import isnan
 from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
+from ..evaluation.function import Function, function
 from ..mechanism.closed import TURN
 from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.names import CENTRES, LENGTHS
 from ..mechanism.program import Variant
 from ..runtime.kernels import STRUCTURAL_ZEROS
-from ..runtime.point import PointFunction, point_of
 from .coordinate import Coordinate
-from .held import Held, UserLoad
+from .drive import ConstantCurve, Curve, SliderDesign
 
-Values = tuple[float, ...]
-Function = Callable[..., Values]
-Load = Callable[[float, float, float], float]
+Array = NDArray[np.float64]
 
 # Held still, T_in is the torque of gravity alone: loads on the slider are added by hand, for they may vary.
-STILL = ("M_eff", "T_in", "Y_wrt_theta")
-MOVING = ("M_eff", "M_eff_wrt_theta", "T_in", "Y_wrt_theta")
-CONTACT = ("N_C", "N_C_wrt_alpha", "lean")
-UNLOADED = ("omega", "alpha", "mu", "F_X", "F_Y")
+STILL = ("M_eff", "M_eff_wrt_theta", "T_in", "T_in_wrt_theta", "Y_wrt_theta", "Y_wrt_theta_theta")
+CONTACT = ("N_C", "N_C_wrt_alpha", "N_C_wrt_omega", "phi")
+SLIDER = ("Y", "s", "Y_wrt_theta")
+
+
+class Still(NamedTuple):
+    """Functions of the angle alone: M_eff, the torque of gravity and Y', each with its slope."""
+
+    inertia: Any
+    inertia_slope: Any
+    weight: Any
+    weight_slope: Any
+    travel: Any
+    bend: Any
 
 
 class Actuation(NamedTuple):
     """The torque [N m] and the forces on the slider [N] that drive the mechanism."""
 
-    torque: Load
-    F_X: Load
-    F_Y: Load
-    steady: bool  # whether all three are numbers
-    held: tuple[Held, ...] = ()  # those of them that vary with the motion
+    torque: Curve
+    F_X: Curve
+    F_Y: Curve
+
+    @property
+    def steady(self) -> bool:
+        """True where all three are numbers."""
+        return all(isinstance(curve, ConstantCurve) for curve in self)
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """Speeds at which pieces meet."""
+        return self.torque.knots
+
+    def ahead(self, theta: float, omega: float, direction: float, growing: float = 1.0) -> "Actuation":
+        """The pieces that hold from a state on: for this way of turning, and this sign of domega/dt."""
+        return Actuation(*(curve.ahead(theta, omega, direction, growing) for curve in self))
 
 
-def _gone(t: float, theta: float, omega: float) -> float:
-    raise RuntimeError("a pickled motion knows its angles and speeds, not the torque that drove it")
+KEPT = ("AB", "BC", *CENTRES)  # inputs that are passed where they are 0, too
+NOTHING = Actuation(ConstantCurve(0.0), ConstantCurve(0.0), ConstantCurve(0.0))
 
 
-class Model:
-    """One design: its inputs, functions and drive."""
+@lru_cache(maxsize=256)
+def _function(
+    names: tuple[str, ...], inputs: tuple[str, ...], fixed: tuple[tuple[str, Any], ...]
+) -> Function:
+    return function(names, inputs=inputs, **dict(fixed))
+
+
+class Model(SliderDesign):
+    """One design: its inputs and functions of its state, and what drives it."""
 
     def __init__(
         self, values: Mapping[str, float], branch: int, coordinate: Coordinate, drive: Actuation
     ) -> None:
         self.values, self.coordinate, self.drive = values, coordinate, drive
-        self.mu = values["mu"]
-        self.sign = float(branch)
-        fixed = fixed_zeros(values) if coordinate.half else (("branch", self.sign), *fixed_zeros(values))
-        form = form_of(values)
-
-        def function(names: Sequence[str], free: Sequence[str], *zeros: str) -> Function:
-            lines = dict(fixed) | dict.fromkeys(zeros, 0.0)
-            return bound(point_of(tuple(names), form, tuple(lines.items())), values, free)
-
-        self.still = function(STILL, ("theta", "branch"), *UNLOADED)
-        self.moving = function(MOVING, ("theta", "branch"), *UNLOADED)
-        self.contact = function(CONTACT, ("theta", "branch", "omega", "F_X", "F_Y"), "alpha", "mu")
-        self.energies = function(("kinetic_energy", "potential_energy"), ("theta", "branch", "omega"))
-        position = function(("Y", "Y_wrt_theta"), ("theta", "branch"))
-        for held in drive.held:
-            held.stand(lambda theta: position(theta, self.sign), self.lengths, branch)
-        following = [load for load in drive[:3] if isinstance(load, UserLoad) and load.follows_the_slider]
-        if following:
-            slider = function(("Y", "s", "Y_wrt_theta"), ("theta", "branch"))
-            for load in following:
-                load.stand(lambda theta: slider(theta, self.sign))
+        self.mu, self.branch = values["mu"], branch
+        loads = ("mu", "F_X", "F_Y")
+        self._design = {n: v for n, v in values.items() if n not in loads and (v != 0.0 or n in KEPT)}
+        self._calls: dict[tuple[str, ...], Function] = {}
+        for curve in drive:
+            curve.stand(self, self.lengths, branch)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A pickle has the design but not what drives it, which may be any function."""
-        return Model, (self.values, int(self.sign), self.coordinate, Actuation(_gone, _gone, _gone, False))
+        return Model, (self.values, self.branch, self.coordinate, NOTHING)
+
+    def _values(self, names: tuple[str, ...], **state: Any) -> tuple[Any, ...]:
+        """Quantities of the design at states; what is not in `state` is 0."""
+        call = self._calls.get(names)
+        if call is None:
+            fixed = {n: 0.0 for n in ("omega", "alpha") if n not in state} | {"branch": self.branch}
+            if "ec" not in self._design:
+                fixed["ec"] = 0.0
+            call = self._calls[names] = _function(names, (*state, *self._design), tuple(fixed.items()))
+        found: tuple[Any, ...] = call(*state.values(), *self._design.values())
+        return found
+
+    def still(self, theta: Any) -> Still:
+        """Inertia, gravity's torque and Y' at angles, with their slopes."""
+        return Still(*self._values(STILL, theta=theta))
+
+    def slider(self, theta: Any) -> tuple[Any, Any, Any]:
+        """Y, s and Y_wrt_theta at angles."""
+        Y, s, slope = self._values(SLIDER, theta=theta)
+        return Y, s, slope
+
+    def contact(self, theta: Any, omega: Any, F_X: Any, F_Y: Any) -> tuple[Any, Any, Any, Any]:
+        """The normal force without friction at alpha = 0, its slopes by alpha and omega, branch tan(phi)."""
+        found = self._values(CONTACT, theta=theta, omega=omega, F_X=F_X, F_Y=F_Y)
+        return found[0], found[1], found[2], self.branch * np.tan(found[3])
 
     @property
     def lengths(self) -> tuple[float, ...]:
         """Eccentricity, crank and rod [m]."""
         return tuple(self.values[name] for name in LENGTHS)
 
-    def inertia(self, theta: float) -> float:
-        """The effective moment of inertia [kg m^2] on the branch of the start."""
-        return self.still(theta, self.sign)[0]
+    def inertia(self, theta: Any) -> Any:
+        """The effective moment of inertia [kg m^2]."""
+        return self.still(theta).inertia
 
-    def kinetic_and_potential(self, theta: float, branch: float, omega: float) -> tuple[float, float]:
-        """Both energies [J], from the generated quantities."""
-        kinetic, potential = self.energies(theta, branch, omega)
-        return kinetic, potential
+    def potential(self, theta: Any) -> Any:
+        """The potential energy [J]."""
+        return self._values(("potential_energy",), theta=theta)[0]
 
     def dead_centres(self) -> dict[str, float]:
         """The crank angles at which the slider turns round, by name: rod and crank in line."""
         ec, AB, BC = self.lengths
-        angles = closed_form(DEAD_CENTRES, ("theta_outer", "theta_inner"), branch=self.sign).point(ec, AB, BC)
+        form = closed_form(DEAD_CENTRES, ("theta_outer", "theta_inner"), branch=float(self.branch))
         there = {"outer": AB > 0.0, "inner": AB > 0.0 and AB != BC}
-        found = zip(there, angles, strict=True)
-        return {which: angle for which, angle in found if there[which] and not isnan(angle)}
+        angles = zip(there, form.point(ec, AB, BC), strict=True)
+        return {which: angle for which, angle in angles if there[which] and not isnan(angle)}
 
     def vanishing(self) -> dict[str, float]:
         """The dead centres at which no inertia is left, because nothing that turns with the crank has any."""
-        angles = [TURN * k / 16 for k in range(16)]
-        inertias = [m for m in map(self.inertia, angles) if not isnan(m)]
-        least = 1e-12 * max(inertias, default=0.0)
+        inertias = self.inertia(TURN * np.arange(16) / 16)
+        least = 1e-12 * float(np.nanmax(inertias, initial=0.0))
         return {which: angle for which, angle in self.dead_centres().items() if self.inertia(angle) <= least}
 
 
@@ -112,18 +151,3 @@ def fixed_zeros(values: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:
     return tuple(
         (name, 0.0) for name in STRUCTURAL_ZEROS if isinstance(z := values.get(name), float) and z == 0.0
     )
-
-
-def bound(point: PointFunction, values: Mapping[str, float], free: Sequence[str]) -> Function:
-    """The point function with a design put in; what is left are the `free` inputs, in their order."""
-    row = [values.get(name, 0.0) for name in point.inputs]
-    places = [(point.inputs.index(name), at) for at, name in enumerate(free) if name in point.inputs]
-    function = point.function
-
-    def call(*now: float) -> Values:
-        arguments = row.copy()
-        for place, at in places:
-            arguments[place] = now[at]
-        return function(*arguments)
-
-    return call

@@ -1,62 +1,43 @@
 """The energy residual of a motion, and a message where it is unusual: step control was deceived then."""
 
-from collections.abc import Callable, Sequence
-from itertools import pairwise
-from math import inf, isfinite
+from math import inf
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .checks import LEAST_RTOL
-from .equations import state_of
-from .events import Q, V, W
-from .model import Model
+from .march import March
+from .result import LIMIT
 
-# The usual residual, as a share of rtol: the medians of `python -m benchmarks.steps` (DOP853), and of 12
-# such motions by each of SciPy's methods.
-USUAL = {
-    "energy": 1e-3, "panels": 2e-4, "DOP853": 2e-4,
-    "RK45": 4e-4, "RK23": 4e-4, "Radau": 5e-3, "LSODA": 5e-3, "BDF": 3.0,
-}  # fmt: skip
+# The usual residual, as a share of rtol: the median of many motions.
+USUAL = {"energy": 1e-3, "panels": 2e-4}
 ROUNDED = 2e-17  # of the largest energy in a step: what rounding alone makes
 TOLD = 100.0  # times the usual
 TELLS = "; energy_residual "
-Energies = Callable[[float, float], tuple[float, float]]
 
 
-def energy_residual(
-    model: Model, accepted: Sequence[tuple[float, NDArray[np.float64]]]
-) -> tuple[float, float]:
+def energy_residual(run: March) -> tuple[float, float]:
     """The energy error relative to the total work or the largest kinetic energy, and that of rounding alone.
 
-    max |kinetic + potential - W - initial| over the accepted steps, with the energies of the generated
-    quantities at theta and omega.
+    max |kinetic + potential - W - initial| over the ends of panels, with the potential energy of the
+    generated quantities.
     """
-    energies = _energies(model)
-    rows = [(*energies(float(y[Q]), float(y[V])), float(y[W])) for _, y in accepted]
-    rows = [row for row in rows if isfinite(sum(row))]
-    if not rows:  # energies beyond every double
+    ends = [*(panel.y for panel in run.panels), run.y]
+    q, v, work = np.array(ends[: -1 if run.status == LIMIT else None]).T  # at a limit Y has half its digits
+    kinetic, potential = 0.5 * v * v, run.model.potential(run.model.coordinate.theta(q))
+    known = np.isfinite(kinetic + potential + work)
+    if not known.any():  # energies beyond every double
         return inf, 0.0
-    first = sum(rows[0][:2])
-    residual = max(abs(kinetic + potential - work - first) for kinetic, potential, work in rows)
-    turned = sum(abs(b[2] - a[2]) for a, b in pairwise(rows))
-    scale = max(turned, *(row[0] for row in rows), 0.0)
+    kinetic, potential, work = kinetic[known], potential[known], work[known]
+    energy = kinetic + potential
+    residual = float(np.abs(energy - work - energy[0]).max())
+    scale = max(float(np.abs(np.diff(work)).sum()), float(kinetic.max()))
     if not scale:
         return 0.0, inf
-    heaviest = max(abs(row[0] + row[1]) for row in rows)
-    return residual / scale, ROUNDED * (len(rows) - 1) * (1.0 + heaviest / scale)
+    return residual / scale, ROUNDED * (len(work) - 1) * (1.0 + float(np.abs(energy).max()) / scale)
 
 
-def _energies(model: Model) -> Energies:
-    def energies(q: float, v: float) -> tuple[float, float]:
-        theta, omega, branch = state_of(model, q, v)
-        return model.kinetic_and_potential(theta, branch, omega)
-
-    return energies
-
-
-def told_of(residual: Any, rounded: Any, rtol: float, method: Any = "DOP853") -> str:
+def told_of(residual: Any, rounded: Any, rtol: float, method: Any = "panels") -> str:
     """The end of a message: the largest of the residuals that are unusual at this rtol; "" if none is.
 
     residual, rounded, method   of one motion or, as arrays, of many; NaN where there is none

@@ -7,6 +7,7 @@ import pytest
 
 import desaxe as dx
 from tests.effort import cases
+from tests.simulation.by_time import by_time
 from tests.simulation.energy.test_by_parameters import KEYS, T_END, TIMES, WRT
 from tests.simulation.energy.test_energy import ANGLES, MACHINE, TABLES, drawn
 
@@ -48,8 +49,8 @@ def test_all_events_and_derivatives_are_those_of_the_integrator(kind):
         if ours["method"] != "energy":
             continue
         compared += 1
-        theirs = dx.simulate(t_end=0.8, wrt=wrt, rtol=1e-12, method="DOP853", **design, **more)
-        assert theirs["method"] == "DOP853"
+        theirs = by_time(t_end=0.8, wrt=wrt, rtol=1e-12, **design, **more)
+        assert theirs["method"] == "panels"
         assert ours["status"] == theirs["status"]
         told, wanted = ([(e.kind, e.which) for e in found["events"]] for found in (ours, theirs))
         assert told == wanted
@@ -93,7 +94,7 @@ def test_the_end_at_an_angle_among_many():
     """Each design ends at an instant of its own; work and its derivatives are those up to there."""
     masses = np.array([1.0, 2.0, 3.0])
     call = {"torque": 0.5, "t_end": 2.0, "until": 3.0, "wrt": ["torque", "theta0", "m_slider"]}
-    many = dx.simulate(**call, method="energy", **{**MACHINE, "m_slider": masses})
+    many = dx.simulate(**call, **{**MACHINE, "m_slider": masses})
     assert set(many["method"]) == {"energy"}
     assert (np.diff(many["t_last"]) > 0.0).all()
     np.testing.assert_allclose(many["work"], 1.5, rtol=1e-12)
@@ -137,16 +138,11 @@ def test_many_pieces_and_too_many():
 
 def test_the_way_of_one_design_is_chosen_and_told():
     call = {"torque": 1.0, "t_end": 0.1, **MACHINE}
-    assert dx.simulate(**call)["method"] == dx.simulate(method="energy", **call)["method"] == "energy"
-    assert dx.simulate(method="DOP853", **call)["method"] == "DOP853"
-    assert dx.simulate(max_step=0.01, **call)["method"] == "DOP853"
-    assert dx.simulate(mu=0.1, **call)["method"] == "DOP853"
+    assert dx.simulate(**call)["method"] == "energy"
+    assert by_time(**call)["method"] == "panels"
+    assert dx.simulate(mu=0.1, **call)["method"] == "panels"
     still = {**call, "torque": 0.0}  # an equilibrium everywhere
-    assert dx.simulate(**still)["method"] == "DOP853"
-    with pytest.raises(ValueError, match="method = 'energy': this design has no energy form that ends"):
-        dx.simulate(method="energy", **still)
-    with pytest.raises(ValueError, match="method = 'energy': the torque is a function"):
-        dx.simulate(method="energy", **{**call, "torque": lambda omega: 1.0 - omega})
+    assert dx.simulate(**still)["method"] == "panels"
 
 
 def test_a_machine_speaks_its_units():

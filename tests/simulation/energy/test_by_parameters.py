@@ -6,6 +6,7 @@ import pytest
 import desaxe as dx
 from tests.effort import cases
 from tests.motions import true_slopes
+from tests.simulation.by_time import by_time
 from tests.simulation.energy.test_energy import ANGLES, MACHINE, TABLES, drawn, machines
 
 WRT = ["AB", "m_slider", "theta0", "omega_start", "ec", "torque"]
@@ -21,7 +22,7 @@ def one_by_one(designs, wrt, own, least):
     """
     for row in np.flatnonzero(own["method"] == "energy"):
         one = {name: v if callable(v) else v[row].item() for name, v in designs.items()}
-        theirs = dx.simulate(t_end=T_END, times=TIMES, wrt=wrt, rtol=1e-12, method="DOP853", **one)
+        theirs = by_time(t_end=T_END, times=TIMES, wrt=wrt, rtol=1e-12, **one)
         assert theirs["status"] == own["status"][row]
         for name in (f"{key}_wrt_{p}" for p in wrt for key in KEYS):
             wanted, found = np.atleast_1d(theirs[name]), np.atleast_1d(own[name][row])
@@ -73,7 +74,6 @@ def test_they_are_those_of_60_digits():
         times=[0.05],
         rtol=1e-12,
         wrt=WRT,
-        method="energy",
         **machines(g_Y=-9.81, F_Y=4.0, **start),
     )
     for p in WRT[: cases(3, len(WRT))]:
@@ -129,9 +129,7 @@ def test_more_swings_than_a_brief_motion_has_pieces():
 
 def test_what_the_energy_form_does_not_differentiate():
     designs = machines(torque=1.0)
-    assert set(dx.simulate(t_end=0.01, times=[0.01], wrt="mu", **designs)["method"]) == {"DOP853"}
-    with pytest.raises(ValueError, match="method = 'energy': wrt = 'mu' is for an integrator"):
-        dx.simulate(t_end=0.1, method="energy", wrt="mu", **designs)
+    assert set(dx.simulate(t_end=0.01, times=[0.01], wrt="mu", **designs)["method"]) == {"panels"}
 
 
 def test_no_digit_hangs_on_the_other_designs():

@@ -6,6 +6,7 @@ import pytest
 import desaxe as dx
 from tests.effort import cases
 from tests.motions import true_end
+from tests.simulation.by_time import by_time
 
 T_END = 1.2
 TIMES = np.linspace(0.0, T_END, 25)
@@ -46,11 +47,11 @@ def apart(ours, theirs):
 def test_random_machines_move_as_the_integrator_moves_them(branch):
     designs = drawn(cases(40, 500, 5_000), 7 + branch)
     ours = dx.simulate(t_end=T_END, times=TIMES, branch=branch, **designs)
-    theirs = dx.simulate(t_end=T_END, times=TIMES, branch=branch, rtol=1e-12, method="DOP853", **designs)
+    theirs = by_time(t_end=T_END, times=TIMES, branch=branch, rtol=1e-12, **designs)
     np.testing.assert_array_equal(ours["status"], theirs["status"])
     own = ours["method"] == "energy"
     assert own.mean() > 0.8
-    assert (ours["method"][~own & (ours["status"] != 6)] == "DOP853").all()
+    assert (ours["method"][~own & (ours["status"] != 6)] == "panels").all()
     assert apart(ours["theta"], theirs["theta"]).max() < 1e-9
     assert apart(ours["omega"], theirs["omega"]).max() < 1e-8
     assert apart(ours["alpha"], theirs["alpha"]).max() < 1e-6
@@ -84,7 +85,7 @@ def test_under_tables_of_all_kinds(kind):
     designs["BC"] = designs["BC"] + 0.08
     designs["torque"] = dx.over_theta(ANGLES, rng.uniform(-2.0, 3.0, 5), "linear")
     call = {"t_end": 0.8, "times": np.linspace(0.0, 0.8, 9), "names": ["T_in", "V_C"], **designs}
-    ours, theirs = dx.simulate(**call), dx.simulate(rtol=1e-12, method="DOP853", **call)
+    ours, theirs = dx.simulate(**call), by_time(rtol=1e-12, **call)
     assert (ours["method"] == "energy").any()
     np.testing.assert_array_equal(ours["status"], theirs["status"])
     for name, least in (("theta", 1e-10), ("omega", 1e-9), ("V_C", 1e-9)):
@@ -119,7 +120,7 @@ def machines(**given):
 )
 def test_the_true_motion(start):
     t_end = 0.25
-    found = dx.simulate(t_end=t_end, times=[t_end], rtol=1e-12, method="energy", **machines(**start))
+    found = dx.simulate(t_end=t_end, times=[t_end], rtol=1e-12, **machines(**start))
     design = {**MACHINE, "g_Y": start.get("g_Y", 0.0)}
     truth = true_end(design, start["torque"], start["theta0"], start.get("omega_start", 0.0), t_end, 80)
     np.testing.assert_allclose(found["theta"][0, 0], truth[0], rtol=0.0, atol=1e-12)
@@ -166,9 +167,11 @@ def test_many_swings_are_one():
 def test_long_motions_and_their_most_pieces():
     """Turns by the hundred: more pieces than a motion takes in the caller's own thread."""
     call = {**machines(torque=[0.4, 0.8], omega_start=5.0), "t_end": 60.0, "times": [30.0, 60.0]}
-    ours, theirs = dx.simulate(**call), dx.simulate(method="DOP853", rtol=1e-12, **call)
-    assert (ours["method"] == "energy").all()
-    assert ours["theta"].max() > 1000.0 * np.pi
+    whole = dx.simulate(**call)
+    assert (whole["method"] == "energy").all()
+    assert whole["theta"].max() > 1000.0 * np.pi
+    brief = call | {"t_end": 5.0, "times": [2.0, 5.0]}
+    ours, theirs = dx.simulate(**brief), by_time(rtol=1e-12, **brief)
     np.testing.assert_allclose(ours["theta"], theirs["theta"], rtol=1e-9)
     # Within a turn the speed swings: 1e-12 of thousands of radians is what it hangs on.
     np.testing.assert_allclose(ours["omega"], theirs["omega"], rtol=1e-6)
@@ -181,16 +184,10 @@ def test_long_motions_and_their_most_pieces():
 def test_the_way_is_chosen_and_told():
     designs = drawn(5, 11)
     assert set(dx.simulate(t_end=0.1, **designs)["method"]) == {"energy"}
-    assert set(dx.simulate(t_end=0.1, method="DOP853", **designs)["method"]) == {"DOP853"}
+    assert set(by_time(t_end=0.1, **designs)["method"]) == {"panels"}
     bare = dict.fromkeys(("m_rod", "m_slider", "I_rod", "ec"), 0.0)
     massless = machines(AB=0.1, BC=0.06, I_crank=1.0, theta0=0.1, torque=1.0, **bare)
-    assert set(dx.simulate(t_end=5.0, **massless)["method"]) == {"DOP853"}
-    with pytest.raises(ValueError, match="method = 'energy': 2 of 2 designs, the first of them number 0"):
-        dx.simulate(t_end=5.0, method="energy", **massless)
-    with pytest.raises(ValueError, match="method = 'energy': the torque is a function, of time or speed"):
-        dx.simulate(t_end=0.1, method="energy", **{**designs, "torque": lambda t, theta, omega: 1.0 - omega})
-    with pytest.raises(ValueError, match="method = 'energy': max_step= is for an integrator"):
-        dx.simulate(t_end=0.1, method="energy", max_step=0.1, **designs)
+    assert set(dx.simulate(t_end=5.0, **massless)["method"]) == {"panels"}
 
 
 @pytest.mark.sampled

@@ -6,7 +6,7 @@ E = (M_eff + J) omega^2/2, J the flywheel,
     dE/dx = way (T - L - R),
 
 T the motor's torque, L what loads and gravity hold against it, R the torque of guide friction, which is
-`way |Y'| mu |N|`; the normal force N depends on the acceleration that it changes (simulation/friction.py).
+`way |Y'| mu |N|`; the normal force N depends on the acceleration that it changes (simulation/law.py).
 """
 
 from collections.abc import Mapping, Sequence

@@ -14,7 +14,7 @@ from .scan import DEEP, NARROWEST, Brackets, Scan, Turns, scan
 from .slopes import OrbitSlopes
 
 Array = NDArray[Any]
-JAMS_AT = 1.0 - 1e-6  # of the wedge K: as in simulation/friction.py
+JAMS_AT = 1.0 - 1e-6  # of the wedge K: as in simulation/law.py
 SAME = 1e-9  # of an energy: two motions are one
 CLOSER = 14  # secant steps to a change of sign, where Newton's method did not settle from a rough one
 ROUGH = 1e-4  # of the energy: a gain from which Newton's method settles

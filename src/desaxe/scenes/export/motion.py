@@ -1,7 +1,7 @@
 """The crank's acceleration under a torque as a Program, for a controller or a simulation in another language.
 
 torque = M alpha + h + c |N|: h is the drive torque at constant speed without friction, c |N| what the guide
-takes (`simulation/friction.py`). The way in which the crank turns, or is about to turn, is an input of its
+takes (`simulation/law.py`). The way in which the crank turns, or is about to turn, is an input of its
 own: at rest there is an answer for each way.
 """
 
@@ -21,7 +21,7 @@ from ...mechanism.load_lines import Total, TurningSense, with_totals
 from ...mechanism.names import CENTRES, LENGTHS, LOADS, MASSES, STATUS
 from ...mechanism.program import Variant
 from ...runtime.specialise import specialise
-from ...simulation.friction import JAMS_AT
+from ...simulation.law import JAMS_AT
 from ...simulation.model import form_of
 
 FREE = """def motion(M_eff, T_in, torque):

@@ -12,15 +12,11 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from ..panel import NODES, ONCE, PLACES, RUNNING, SERIES
+
 Array = NDArray[np.float64]
-NODES = 10
-_X, _ = legendre.leggauss(NODES)
-PLACES = (_X + 1.0) / 2.0  # on [0, 1]
-SERIES = np.linalg.inv(legendre.legvander(_X, NODES - 1))  # values at the nodes -> Legendre series
-ONCE = legendre.legint(np.eye(NODES), lbnd=-1, axis=0) / 2.0  # series -> series of its integral
 TWICE = legendre.legint(ONCE, lbnd=-1, axis=0) / 2.0
-RUNNING = legendre.legvander(_X, NODES) @ ONCE @ SERIES
-RUNNING_TWICE = legendre.legvander(_X, NODES + 1) @ TWICE @ SERIES
+RUNNING_TWICE = legendre.legvander(2.0 * PLACES - 1.0, NODES + 1) @ TWICE @ SERIES
 LEAST = 1e-12  # of a column's largest coefficient: a panel with less need not resolve it
 
 
@@ -29,16 +25,6 @@ class Local(NamedTuple):
 
     h: Array
     series: Array  # panels, NODES, 2 + columns
-
-    def unresolved(self, tolerance: float) -> NDArray[np.bool_]:
-        """The panels on which the last terms of a series are more than this share of it."""
-        size = np.abs(self.series)
-        whole, tail = size.max(axis=1), size[:, -2:].max(axis=1)
-        whole[:, :2] = np.maximum(whole[:, :2], 1.0)
-        with np.errstate(invalid="ignore"):
-            least = LEAST * np.nanmax(whole, axis=0, initial=0.0)
-            bad: NDArray[np.bool_] = (tail > tolerance * np.maximum(whole, least)).any(axis=1)
-        return bad
 
 
 def solve(h: Array, a: Array, b: Array, c: Array) -> Local:
@@ -74,3 +60,12 @@ class Trajectories(NamedTuple):
         position = x + moved * (s[:, None] * y + np.einsum("ij,ijk->ik", twice, series))
         change = y + moved * np.einsum("ij,ijk->ik", once, series)
         return position, change / np.where(self.h[panel] > 0.0, self.h[panel], 1.0)[:, None]
+
+    def unresolved(self, tolerance: float) -> NDArray[np.bool_]:
+        """The panels on which the last terms of a series are more than this share of what it is added to."""
+        tail = np.abs(self.series[:, -2:]).max(axis=1)
+        size = np.maximum(np.abs(self.x) * LEAST, np.abs(self.y)) + np.abs(self.series).max(axis=1)
+        with np.errstate(invalid="ignore"):
+            least = LEAST * np.nanmax(size, axis=0, initial=0.0)
+            bad: NDArray[np.bool_] = (tail > tolerance * np.maximum(size, least)).any(axis=1)
+        return bad

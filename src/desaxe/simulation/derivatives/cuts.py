@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...loads.load import OverY
 from ...mechanism.names import LENGTHS
-from ..equations import Resting, State, state_of
-from ..events import Q, V
-from ..held import Held
-from ..one_design import MotionRun, Piece
+from ..drive import Curve, PositionCurve
+from ..events import V
+from ..law import State, state_of
+from ..march import March
+from ..panel import Panel
 
 Array = NDArray[np.float64]
 SAME = 1e-9  # of the accelerations: a jump by less is rounding
@@ -31,67 +31,50 @@ class Cuts:
     values  quantities of the design at an angle
     """
 
-    def __init__(self, run: MotionRun, wrt: Sequence[str], values: Values) -> None:
+    def __init__(self, run: March, wrt: Sequence[str], values: Values) -> None:
         self.run, self.wrt, self.values = run, wrt, values
         self.model = run.model
         self.notes: list[str] = []
-        self.fastest = max(abs(state_of(self.model, y[Q], y[V]).omega) for _, y in run.accepted)
+        ends = np.array([*(panel.y for panel in run.panels), run.y]).T
+        self.fastest = float(np.nanmax(np.abs(state_of(self.model, *ends[: V + 1]).omega)))
 
-    def hold(self, piece: Piece, only: Held | None = None) -> None:
-        """Hold loads, or only one of them, to what they are on a piece of the motion."""
-        if not self.model.drive.held:
-            return
-        middle = self.state(piece, 0.5 * (piece.start + piece.stop))
-        for held in self.model.drive.held:
-            if only is None or held is only:
-                held.hold(middle.theta, copysign(1.0, middle.omega))
-
-    def release(self) -> None:
-        """Hold nothing."""
-        for held in self.model.drive.held:
-            held.release()
-
-    def state(self, piece: Piece, t: float) -> State:
+    def state(self, piece: Panel, t: float) -> State:
         """The state of the crank at an instant of a piece."""
-        q, v, _ = piece.state(np.array([t]))[:, 0].tolist()
+        q, v, _ = piece.state(t).tolist()
         return state_of(self.model, q, v)
 
     # ---- jumps ------------------------------------------------------------------------------
 
-    def jump(self, before: Piece, after: Piece, x: Array, v: Array) -> Array:
+    def jump(self, before: Panel, after: Panel, x: Array, v: Array) -> Array:
         """By how much omega_p jumps from one piece to the next; x, v: theta_p, omega_p before."""
         none = np.zeros(len(self.wrt))
         if before.law is after.law:
-            return none  # the next step of the same stretch
-        if isinstance(before.law, Resting):
+            return none  # the next panel of the same stretch
+        if before.law.rests:
             return none  # it breaks away without a jump of alpha, or at an instant of its own
-        if isinstance(after.law, Resting):
+        if after.law.rests:
             return -v
-        theta, omega, _ = self.state(after, after.start)
+        theta, omega = self.state(after, after.start)
         place = after.start, theta, omega
-        self.hold(before)
-        left = before.law.alpha(*place)
-        self.hold(after)
-        right = after.law.alpha(*place)
+        left, right = (float(piece.law.alpha(*place)) for piece in (before, after))
         least = SAME * (abs(left) + abs(right))
         if abs(left - right) <= least:
             return none
         if omega == 0.0:
             return (left - right) * self.standstill(after.start, left, v)
-        self.hold(before)
-        shares = {}
-        last = left
-        for held in self.model.drive.held:
-            self.hold(after, held)
-            now = before.law.alpha(*place)
+        shares: dict[Curve, float] = {}
+        last, drive = left, before.law.drive
+        for name, curve in after.law.drive._asdict().items():
+            drive = drive._replace(**{name: curve})
+            now = float(before.law.with_drive(drive).alpha(*place))
             if abs(now - last) > least:
-                shares[held] = last - now
+                shares[curve] = last - now
             last = now
         if not shares:
             return none  # the guide only changes sides, where it does not press: alpha differs by rounding
-        shifts = {held: self.kink(held, theta) for held in shares}
-        first = next(iter(shifts), None)
-        if first and all((shift == shifts[first]).all() for shift in shifts.values()):
+        shifts = {curve: self.kink(curve, theta) for curve in shares}
+        first = next(iter(shifts))
+        if all((shift == shifts[first]).all() for shift in shifts.values()):
             shares = {first: left - right}  # with what friction makes of it on the other side of the guide
         elif abs(last - right) > least:
             self.notes.append(
@@ -99,7 +82,7 @@ class Cuts:
             )
             return none + nan
         passages = [
-            share * self.passage(after.start, omega, shifts[held], x) for held, share in shares.items()
+            share * self.passage(after.start, omega, shifts[curve], x) for curve, share in shares.items()
         ]
         total: Array = np.sum(passages, axis=0)
         return total
@@ -124,11 +107,11 @@ class Cuts:
     def _by_lengths(self, slopes: Mapping[str, float]) -> Array:
         return np.array([slopes.get(p, 0.0) for p in self.wrt])
 
-    def kink(self, held: Held, theta: float) -> Array:
+    def kink(self, curve: Curve, theta: float) -> Array:
         """The shift of a kink of a load by each parameter: one over the slider moves with the lengths."""
-        load = held.load
-        if not isinstance(load, OverY):
+        if not isinstance(curve, PositionCurve):
             return self._by_lengths({})
+        load = curve.load
         found = self.values(load.motion(("theta", *LENGTHS)), theta)
         found = {name: float(value) for name, value in found.items()}
         along = float(load.moved("theta", found))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..history import add_slopes
-from ..one_design import MotionRun
+from ..march import March
 from ..result import FAILED, JAMS, Event, Simulation
 from .cuts import TOUCHED
 from .slopes import TorqueSlopes
@@ -21,19 +21,15 @@ ENDS = ("angle", "standstill", "limit", "no inertia")
 
 
 def add_sensitivities(
-    result: Simulation, run: MotionRun, wrt: Sequence[str], given: Mapping[str, Any], slopes: TorqueSlopes
+    result: Simulation, run: March, wrt: Sequence[str], given: Mapping[str, Any], slopes: TorqueSlopes
 ) -> None:
     """Add theta_wrt_<p>, omega_wrt_<p>, t_last_wrt_<p> and work_wrt_<p>, and `wrt` of each event."""
-    try:
-        with np.errstate(all="ignore"):
-            found = Variations(run, wrt, given, slopes)
-            theta, omega = found.course.at(result["t"])
-            of_events = [of_event(found, event) for event in run.events]
-            ended = of_end(found, of_events)
-            work = of_work(found, ended)
-    finally:
-        for held in run.model.drive.held:
-            held.release()
+    with np.errstate(all="ignore"):
+        found = Variations(run, wrt, given, slopes)
+        theta, omega = found.course.at(result["t"])
+        of_events = [of_event(found, event) for event in run.events]
+        ended = of_end(found, of_events)
+        work = of_work(found, ended)
     add_slopes(result, wrt, (theta.T, omega.T, ended, work), of_events, found.cuts.notes)
 
 
@@ -50,8 +46,7 @@ def of_event(own: Variations, event: Event) -> Array:
         return slopes
     if event.kind == "standstill":
         piece = next(one for one in own.pieces if one.stop >= event.t)
-        own.cuts.hold(piece)
-        return own.cuts.standstill(event.t, piece.law.alpha(event.t, event.theta, 0.0), v)
+        return own.cuts.standstill(event.t, float(piece.law.alpha(event.t, event.theta, 0.0)), v)
     if event.kind == "break-away":
         return _break_away(own, event, x)
     own.cuts.notes.append(f"NaN of {event.kind} at t = {event.t:.6g} s")
@@ -67,7 +62,6 @@ def _break_away(own: Variations, event: Event, x: Array) -> Array:
             f"NaN of break-away at t = {event.t:.6g} s, but for a derivative= that returns dT/dt, too"
         )
         return np.full(x.size, nan)
-    own.cuts.hold(after)
     if abs(after.law.alpha(event.t, event.theta, 0.0)) * own.run.t > TOUCHED * own.cuts.fastest:
         return np.zeros(x.size)  # the torque jumps at an instant of its own
     way = copysign(BARELY, own.cuts.state(after, 0.5 * (after.start + after.stop)).omega)

@@ -6,12 +6,11 @@ omega; p), with the loads and the friction in T_in. Differentiated by p at a fix
     T_in_alpha alpha_p = T_p - T_in_p - (T_in_theta - T_theta) theta_p - (T_in_omega - T_omega) omega_p
 
 with alpha_p = theta_p'' and derivatives of T_in that are generated like every other quantity: a linear
-equation along a motion that is known, solved on panels between the cuts of the motion (`collocation`), which
-are halved until they resolve it. At a cut that moves with p, where the acceleration jumps, omega_p jumps by
+equation along a motion that is known, solved on the panels of the motion (`collocation`), which are halved
+where they do not resolve it. At a cut that moves with p, where the acceleration jumps, omega_p jumps by
 (alpha before - alpha after) dt/dp (`cuts`).
 """
 
-from bisect import bisect
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -20,12 +19,12 @@ from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 
 from ...evaluation.evaluate import evaluate
-from ..equations import Resting, state_of
 from ..events import Q
-from ..friction import Rubbing
-from ..one_design import MotionRun, Piece
+from ..law import Law, state_of
+from ..march import March
+from ..panel import NODES, ONCE, PLACES, SERIES, Panel
 from ..result import LIMIT
-from .collocation import NODES, ONCE, PLACES, SERIES, TWICE, Local, Trajectories, solve
+from .collocation import TWICE, Local, Trajectories, solve
 from .cuts import Cuts
 from .rubbing_slopes import Signs, rubbing_slopes
 from .slopes import TorqueSlopes
@@ -55,16 +54,16 @@ class Variations:
     """
 
     def __init__(
-        self, run: MotionRun, wrt: Sequence[str], given: Mapping[str, Any], slopes: TorqueSlopes
+        self, run: March, wrt: Sequence[str], given: Mapping[str, Any], slopes: TorqueSlopes
     ) -> None:
         self.run, self.wrt, self.given, self.slopes = run, tuple(wrt), given, slopes
         self.inputs = [p for p in wrt if p not in (*STARTS, "torque")]
         self.cuts = Cuts(run, self.wrt, self.values)
         self.grows = run.status == LIMIT and bool(run.model.coordinate.half)  # the inertia, without bound
-        self.pieces = [piece for piece in run.pieces if piece.stop > piece.start] or run.pieces[:1]
+        self.pieces: list[Any] = [piece for piece in run.panels if piece.stop > piece.start] or run.panels[:1]
         if self.grows:
             self.pieces = _with_long_end(self.pieces, run.model.coordinate.ends)
-        self.course = self._joined(*self._solved())
+        self.course = self._resolved()
 
     def values(
         self, names: Sequence[str], theta: Any, omega: Any = 1.0, alpha: Any = 0.0, **other: float
@@ -76,30 +75,27 @@ class Variations:
 
     # ---- panels -----------------------------------------------------------------------------
 
-    def _solved(self) -> tuple[Array, Array, Local]:
-        """The panels, by their piece and start in order, and the solutions on them."""
-        moving = [k for k, piece in enumerate(self.pieces) if not isinstance(piece.law, Resting)]
+    def _resolved(self) -> Trajectories:
+        """The course on the panels of the motion, halved where the derivatives bend more than it does."""
+        moving = [k for k, piece in enumerate(self.pieces) if not piece.law.rests]
         piece = np.array(moving, int)
         start = np.array([self.pieces[k].start for k in moving])
         h = np.array([self.pieces[k].stop - self.pieces[k].start for k in moving])
         if self.grows:
             h[-1] *= SHORT
-        done = []
-        for halving in range(HALVINGS + 1):
-            local = self._local(piece, start, h)
-            bad = local.unresolved(RESOLVED) & (halving < HALVINGS)
+        for _ in range(HALVINGS):
+            course = self._joined(piece, start, self._local(piece, start, h))
+            bad = course.unresolved(RESOLVED)[np.searchsorted(course.start, start)]
             if self.grows:
                 bad &= start < self.pieces[-1].start  # the longer the last panel, the better it goes on
-            done.append((piece[~bad], start[~bad], h[~bad], local.series[~bad]))
             if not bad.any():
                 break
-            half = 0.5 * h[bad]
-            piece, h = np.tile(piece[bad], 2), np.tile(half, 2)
-            start = np.concatenate([start[bad], start[bad] + half])
-        columns = [np.concatenate(column) for column in zip(*done, strict=True)]
-        order = np.argsort(columns[1])
-        piece, start, h, series = (column[order] for column in columns)
-        return piece, start, Local(h, series)
+            half = np.repeat(np.where(bad, 0.5 * h, h), 1 + bad)
+            second = np.concatenate([[False], np.diff(np.repeat(np.arange(h.size), 1 + bad)) == 0])
+            piece, start = np.repeat(piece, 1 + bad), np.repeat(start, 1 + bad) + half * second
+            h = half
+            self.cuts.notes.clear()
+        return course
 
     def _local(self, piece: Array, start: Array, h: Array) -> Local:
         """The solutions on some panels."""
@@ -125,10 +121,12 @@ class Variations:
 
     def rubbing(self, along: Along, piece: Array, by: Sequence[str]) -> tuple[dict[str, Array], Array]:
         """The derivatives of the torque that friction takes, and that torque."""
-        laws = [law for k in piece.tolist() if isinstance(law := self.pieces[k].law, Rubbing)]
-        sides = (np.array([law.way * law.side for law in laws]), np.array([law.pressed for law in laws]))
+        laws = [self.pieces[k].law for k in piece.tolist()]
+        sides = (
+            np.array([law.direction * law.side for law in laws]), np.array([law.pressed for law in laws])
+        )  # fmt: skip
         model, state = self.run.model, (along.theta, along.omega, along.alpha)
-        signs = Signs(*sides, model.sign)
+        signs = Signs(*sides, float(model.branch))
         return rubbing_slopes(lambda names: self.values(names, *state, mu=0.0), model.mu, signs, by)
 
     def _along(self, piece: Array, start: Array, h: Array) -> Along:
@@ -138,14 +136,11 @@ class Variations:
             rows[:, row] = self._states(self.pieces[k], t[row])
         return Along(t, *rows)
 
-    def _states(self, piece: Piece, t: Array) -> Array:
+    def _states(self, piece: Panel, t: Array) -> Array:
         """Angle, speed and acceleration at instants of a piece."""
-        self.cuts.hold(piece)
-        found = np.empty((3, t.size))
-        for k, (q, v, _) in enumerate(piece.state(t).T.tolist()):
-            theta, omega, _ = state_of(self.run.model, q, v)
-            found[:, k] = theta, omega, piece.law.alpha(float(t[k]), theta, omega)
-        return found
+        state = state_of(self.run.model, *piece.state(t)[:2])
+        alpha = piece.law.alpha(t, *state)
+        return np.stack(np.broadcast_arrays(*state, alpha))
 
     # ---- from the start to the end ------------------------------------------------------------
 
@@ -156,7 +151,7 @@ class Variations:
         for k, one in enumerate(self.pieces):
             if k:
                 v = v + self.cuts.jump(self.pieces[k - 1], one, x, v)
-            if isinstance(one.law, Resting):
+            if one.law.rests:
                 v = v if one.stop == one.start else np.zeros(len(self.wrt))  # stopped where it started
                 rows.append((one.start, one.stop - one.start, x, v, np.zeros((NODES, len(self.wrt)))))
                 continue
@@ -170,7 +165,7 @@ class Variations:
 
     # ---- along the motion ----------------------------------------------------------------------
 
-    def at(self, piece: Piece, t: float) -> Along:
+    def at(self, piece: Panel, t: float) -> Along:
         """The motion at an instant of a piece."""
         instant = np.array([t])
         return Along(instant, *self._states(piece, instant))
@@ -189,23 +184,34 @@ class Variations:
         return found
 
 
-def _with_long_end(pieces: Sequence[Piece], ends: Sequence[float]) -> list[Piece]:
+class _Joined(NamedTuple):
+    """Panels of one law, as one."""
+
+    law: Law
+    start: float
+    stop: float
+    panels: Sequence[Panel]
+
+    def state(self, t: Any) -> Array:
+        """q, v and W at an instant, or a column for each of several."""
+        edges = [panel.start for panel in self.panels[1:]]
+        which = np.searchsorted(edges, t, side="right")
+        if not np.ndim(t):
+            return self.panels[int(which)].state(t)
+        return np.stack([self.panels[k].state(x) for k, x in zip(which, t, strict=True)], axis=1)
+
+
+def _with_long_end(pieces: Sequence[Any], ends: Sequence[float]) -> list[Any]:
     """The pieces with the last ones joined, if the motion has one law from well before its limit angle on."""
 
-    def gap(piece: Piece) -> float:
-        q = float(piece.state(np.array([piece.start]))[Q, 0])
-        return min(abs(end - q) for end in ends)
+    def gap(piece: Panel) -> float:
+        return min(abs(end - float(piece.y[Q])) for end in ends)
 
     first = len(pieces) - 1
     while first and pieces[first - 1].law is pieces[first].law and gap(pieces[first]) < WELL_BEFORE:
         first -= 1
     last = pieces[first:]
-    edges = [piece.start for piece in last[1:]]
-
-    def state(t: Array) -> Array:
-        return np.stack([last[bisect(edges, x)].state(x) for x in t.tolist()], axis=1)
-
-    return [*pieces[:first], Piece(last[0].start, last[-1].stop, state, last[0].law)]
+    return [*pieces[:first], _Joined(last[0].law, last[0].start, last[-1].stop, last)]
 
 
 _END_ONCE, _END_TWICE = ONCE.sum(axis=0), TWICE.sum(axis=0)  # Legendre polynomials are 1 at the end

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ...loads.load import OverTheta, OverY
 from ...mechanism.names import LENGTHS
-from .collocation import NODES, ONCE, PLACES, SERIES
+from ..panel import NODES, ONCE, PLACES, SERIES
 from .variational import Along, Variations
 
 Array = NDArray[np.float64]
@@ -57,8 +57,8 @@ def _to_limit(own: Variations, of_end: Array) -> Array:
     along = own.last_panel
     x, v = _course(own, along)
     by_theta, by_omega = own.slopes.at(along.t, along.theta, along.omega)
-    now = zip(along.t[0].tolist(), along.theta[0].tolist(), along.omega[0].tolist(), strict=True)
-    torque = np.array([model.drive.torque(*instant) for instant in now])
+    drive = own.pieces[-1].law.drive
+    torque = drive.torque.at(along.t[0], along.theta[0], along.omega[0])
     push = by_theta * x + by_omega * v + np.array([float(p == "torque") for p in own.wrt])[:, None, None]
     power = (push * along.omega + torque * v)[:, 0]
     found: Array = _energy(own, begin)[:-1, 0] + _integral(own, power) + _of_load(own, begin)
@@ -92,9 +92,8 @@ def _of_load(own: Variations, begin: Along) -> Array:
     _, AB, _ = own.run.model.lengths
     limit, load = own.run.events[-1].theta, own.given["F_Y"]
     before, place = _shifts(own, begin)
-    own.cuts.hold(own.pieces[-1])  # at a jump the load is that behind it
     forces = [
-        own.run.model.drive.F_Y(*(float(one[0]) for one in begin[:3])),
+        float(own.pieces[-1].law.drive.F_Y.at(*(float(one[0]) for one in begin[:3]))),  # behind a jump
         _at_limit(own, limit, AB * cos(limit)),
     ]
     after = np.array([cos(limit) * (p == "AB") for p in own.wrt]) - AB * sin(limit) * own.cuts.limit(limit)

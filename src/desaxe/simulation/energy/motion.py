@@ -144,7 +144,7 @@ def design_of(
     middle = arc.middle if arc.half else 0.0 if not isfinite(arc.first) else nan
     push, load = (v if isinstance(v, Load) else np.array([float(v)]) for v in (torque, force))
     theta0, omega, *bounds = (np.array([number]) for number in (*start, middle, arc.half))
-    return Designs(inputs, int(model.sign), push, load, theta0, omega, bounds[0], bounds[1])
+    return Designs(inputs, model.branch, push, load, theta0, omega, bounds[0], bounds[1])
 
 
 def _path(

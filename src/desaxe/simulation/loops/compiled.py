@@ -14,8 +14,10 @@ from ...mechanism.constants import constants
 from ...mechanism.program import Variant
 from ...runtime.native.modules import Native, native
 from ...runtime.specialise import specialise
-from ..model import MOVING, STILL, UNLOADED
 
+STILL = ("M_eff", "T_in", "Y_wrt_theta")
+MOVING = ("M_eff", "M_eff_wrt_theta", "T_in", "Y_wrt_theta")
+UNLOADED = ("omega", "alpha", "mu", "F_X", "F_Y")
 _NAMES = "motions", "state", "dop853", "dense", "panel", "inside_panel", "picard"
 FILES = tuple(Path(__file__).with_name(f"{name}.py") for name in _NAMES)
 _SIGNATURE = """rows, row = types.float64[:, ::1], types.float64[::1]

@@ -1,0 +1,74 @@
+"""The request of a simulation, and the motion of one design that answers it."""
+
+from collections.abc import Mapping
+from math import sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..support.deadline import Deadline
+from ..support.forks import IMPORTS
+from .checks import design_values, drive_of, model_of, scalar
+from .derivatives.slopes import TorqueSlopes
+from .drive import AngleCurve, PositionCurve
+from .energy.alone import result_alone
+from .energy.motion import design_of, motion_of
+from .energy.serves import tables_alone
+from .history import FORCES, instants_of, integrated
+from .march import March, Settings
+from .result import Simulation
+
+
+class Ask(NamedTuple):
+    """The part of a request that all motions of a call share."""
+
+    t_end: float
+    names: tuple[str, ...]
+    branch: int
+    rtol: float
+    max_steps: int
+    deadline: Deadline
+    wrt: tuple[str, ...]
+    slopes: TorqueSlopes | None
+    until: tuple[float, ...]
+
+
+def one_motion(
+    ask: Ask, given: Mapping[str, Any], starts: Mapping[str, Any], times: Any, energy: bool = True
+) -> Simulation:
+    """The motion of one design.
+
+    energy   whether it may go over the crank angle, where that serves
+    """
+    torque = starts["torque"]
+    start = scalar("theta0", starts["theta0"], "rad"), scalar("omega_start", starts["omega_start"], "rad/s")
+    drive = drive_of(torque, given["F_X"], given["F_Y"], ask.deadline)
+    values = design_values(given)
+    model = model_of(values, ask.branch, start[0], drive)
+    known: dict[str, Any] = {**values, "branch": ask.branch}
+    loads = {name: given[name] for name in FORCES if callable(given[name])}
+    tables = tables_alone({**loads, **({"torque": torque} if callable(torque) else {})}, model.mu)
+    if energy and tables and "mu" not in ask.wrt:
+        pushes = torque if callable(torque) else drive.torque.at(0.0, *start)
+        design = design_of(values, model, pushes, loads.get("F_Y", values["F_Y"]), start)
+        asked = np.append(instants_of(times, ask.t_end), ask.t_end)
+        with np.errstate(all="ignore"):  # values beyond every double: the panels of time tell
+            motion = motion_of(
+                model, design._replace(wrt=ask.wrt), ask.until, asked, ask.rtol, ask.max_steps, ask.deadline
+            )
+            result = None if motion is None else result_alone(motion, ask.names, times, {**known, **loads})
+        if result is not None:
+            return result
+    y = np.array([model.coordinate.q(start[0]), start[1] * sqrt(model.inertia(start[0])), 0.0])
+    with np.errstate(all="ignore"):  # values beyond every double end the motion with a status
+        run = March(model, y, ask.t_end, ask.until, Settings(ask.rtol, ask.max_steps), ask.deadline)
+        run.to_the_end()
+        result = integrated(run, ask.names, times, known)
+    if ask.slopes is not None:
+        with IMPORTS:
+            from .derivatives.sensitivities import add_sensitivities
+
+        kept = zip(FORCES, drive[1:], strict=True)
+        known |= {n: c.load for n, c in kept if isinstance(c, (AngleCurve, PositionCurve))}
+        add_sensitivities(result, run, ask.wrt, known, ask.slopes)
+    return result
