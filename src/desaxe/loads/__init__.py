@@ -11,6 +11,7 @@ cells      rows of cells of texts, workbooks and frames, and the numbers of thei
 column_files  columns of files and frames by position or name, with the units of their headings
 made       loads made of columns, checked
 maker      public calls that make loads and motors, in SI units or a machine's
+arithmetic  multiples and sums of loads, loads shifted by an angle
 pressure   pressures on a piston as forces
 tabulated  `over_theta`, `over_Y`, `over_stroke`: loads from lists, files and functions
 motors     a torque over the speed: `over_omega`, `kloss`

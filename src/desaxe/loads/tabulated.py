@@ -48,6 +48,8 @@ class MakeOverTheta(Maker):
                 or texts in bar, MPa, psi; the load is -(p - ambient) area: gas pushes it towards the crank
     ambient     the pressure on its other side; 0 without
 
+    Loads over the same thing add up; `2 * load` is a multiple, `load.shifted("120 deg")` lags by an angle.
+
     Derivatives by theta are total: they include the load's slope; at a kink it is that to the right. Raises
     ValueError or TypeError for a table that is no periodic function.
     """
