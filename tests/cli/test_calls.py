@@ -3,6 +3,7 @@
 import csv
 import json
 import shlex
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import desaxe as dx
 from desaxe.cli.calls import CALLS
 from desaxe.cli.command import main
 
+ROOT = Path(__file__).parents[2]
 LENGTHS = "ec=10mm AB=125mm BC=350mm"
 MACHINE = dx.Machine(ec=0.01, AB=0.125, BC=0.35, omega0=157.0, m_slider=1.0)
 WORDS = f"{LENGTHS} omega0=157 m_slider=1kg"
@@ -68,9 +70,12 @@ def test_the_numbers_are_those_of_the_call(line, capsys):
     assert numbers(found) == pytest.approx(expected, rel=1e-12, abs=1e-12, nan_ok=True)
 
 
-@pytest.mark.parametrize("call", [call for call in CALLS if call != "steady"])
-def test_the_example_of_its_help_runs(call, capsys):
+@pytest.mark.parametrize("call", CALLS)
+def test_the_example_of_its_help_runs(call, capsys, monkeypatch):
+    monkeypatch.chdir(ROOT)
     _, example = CALLS[call]
+    assert main([call, "--help"]) == 0
+    assert f"desaxe {call} {example}" in capsys.readouterr().out
     assert main([call, *shlex.split(example)]) == 0
     assert capsys.readouterr().out.strip()
 
@@ -118,6 +123,9 @@ COMPLAINTS = {
     f"peak a_C knd=max {LENGTHS}": "did you mean kind?",
     "grid a_C theta=0:b:3 ec=0": "theta=0:b:3: expected FIRST:LAST:COUNT, such as 0deg:360deg:73",
     "grid a_C ec=0 ec=1": "ec=1: ec is given twice",
+    f"steady {LENGTHS}": "desaxe steady: missing torque; each is given as NAME=VALUE, the torque also by",
+    "drive ec=0,0.01 AB=1 BC=3 omega0=1": "drive expects one number, for one design: give one, as NAME=VALUE",
+    f"tolerance stroke {LENGTHS}": 'give one as "NAME=VALUE +- TOLERANCE"',
     "optimize over.ec=0:1 over=2": "over=2: over has a value already",
     "events -o values.txt": "-o values.txt: its name must end in .json, .csv",
 }

@@ -4,6 +4,7 @@ A call of this table is a method of `Machine` of the same name. To add one, add 
 """
 
 import argparse
+import re
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -45,13 +46,18 @@ CALLS = {
     "simulate": ("motion under a torque", "torque=20 t_end=1s ec=0 AB=125mm BC=350mm I_crank=0.1"),
     "steady": (
         "steady motion on a motor: the [steady] torque of a scene, or a number",
-        "--machine press.toml flywheel_inertia=3",
+        "--machine examples/motor.toml flywheel_inertia=3",
     ),
 }
+MISSING = re.compile(r"(\w+)\(\) missing \d+ required keyword-only arguments?: (.*)")
+PLUS_MINUS = "dx.plus_minus(value, tolerance)"
+SCENE = ", the torque also by [steady] of a scene"
 HELP = """\
-NAME=VALUE: an input or an option of the call, `help(desaxe.{name})` lists them. VALUE is a number (SI units
-and radians, or those of --units or of the scene), a number with its unit, FIRST:LAST:COUNT, a list with
-commas, or LOW:HIGH; NAME.KEY=VALUE is an entry of a table.
+NAME=VALUE: an input, as `desaxe point --help` lists them, or an option of the call. VALUE is a
+number (SI units and radians, or those of --units or of the scene), a number with its unit,
+FIRST:LAST:COUNT, a list with commas, or LOW:HIGH; NAME.KEY=VALUE is an entry of a table.
+
+options: {options}
 
 example:
   desaxe {name} {example}
@@ -61,7 +67,7 @@ example:
 def add_calls(commands: Any) -> None:
     """Add a command for each call of the table."""
     for name, (meaning, example) in CALLS.items():
-        text = partial(HELP.format, name=name, example=example)
+        text = partial(_help, name, example)
         parser = add_command(commands, name, meaning, _call, text=text)
         parser.set_defaults(call=name)
         parser.add_argument("words", nargs="*", metavar="QUANTITY | NAME=VALUE", help="quantities and inputs")
@@ -75,13 +81,42 @@ def add_calls(commands: Any) -> None:
         )
 
 
+def _help(name: str, example: str) -> str:
+    """The longer help of a call, with the names of its options."""
+    from inspect import Parameter, signature
+
+    from ..machine.methods import import_function
+    from ..mechanism.inputs import INPUTS
+
+    every = signature(import_function(name)).parameters.values()
+    options = [p.name for p in every if p.kind is Parameter.KEYWORD_ONLY and p.name not in INPUTS]
+    return HELP.format(name=name, example=example, options=", ".join(options) or "none")
+
+
 def _call(options: argparse.Namespace) -> int:
     if options.file is not None:
         require_target(Path(options.file), options.overwrite)
     names, arguments = arguments_of(options.words)
     machine, arguments = _machine(options, arguments)
-    written(getattr(machine, options.call)(*_quantities(options.call, names), **arguments), options)
+    quantities = _quantities(options.call, names)
+    try:
+        answer = getattr(machine, options.call)(*quantities, **arguments)
+    except (TypeError, ValueError) as error:
+        raise UsageError(_as_words(str(error))) from error
+    written(answer, options)
     return 0
+
+
+def _as_words(message: str) -> str:
+    """A message of the call in terms of the command line."""
+    missing = MISSING.match(message)
+    if missing:
+        names = missing[2].replace("'", "")
+        scene = SCENE if "torque" in names else ""
+        return f"desaxe {missing[1]}: missing {names}; each is given as NAME=VALUE{scene}"
+    message = message.replace(PLUS_MINUS, '"NAME=VALUE +- TOLERANCE"')
+    head, call, _ = message.partition("; call it for each of them")
+    return f"{head}: give one, as NAME=VALUE" if call else message
 
 
 def _machine(options: argparse.Namespace, arguments: dict[str, Any]) -> tuple[Any, dict[str, Any]]:

@@ -1,4 +1,8 @@
-"""Arithmetic of loads: multiples, sums of loads over the same thing, loads shifted by an angle."""
+"""Arithmetic of loads: multiples, sums of loads over the same thing, loads shifted by an angle.
+
+A result may be a load of another class than its parts: the operators stand above all classes of loads, and
+are attached to them here.
+"""
 
 from bisect import bisect_left
 from collections.abc import Callable
@@ -184,3 +188,19 @@ def _added(rows: list[Row]) -> Row:
     """The sum of two cubics."""
     a, b = rows
     return a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]
+
+
+def attach_operators() -> None:
+    """Give loads `2 * load`, `-load`, `one + other`, `one - other`, `load.shifted(angle)`."""
+    operators: dict[str, Callable[..., Any]] = {
+        "__mul__": multiple,
+        "__rmul__": multiple,
+        "__add__": total,
+        "__neg__": lambda load: multiple(load, -1.0),
+        "__sub__": lambda one, other: (
+            total(one, multiple(other, -1.0)) if isinstance(other, Load) else NotImplemented
+        ),
+    }
+    for name, operator in operators.items():
+        setattr(Load, name, operator)
+    OverTheta.shifted = shifted  # type: ignore[attr-defined]

@@ -83,27 +83,7 @@ class Load(ABC):
     def told(self, conversion: "Conversion | None" = None) -> str:
         """The load in a line; with a conversion in that unit."""
 
-    __array_ufunc__ = None  # NumPy's numbers leave a product to the load
-
-    def __mul__(self, factor: Any) -> Any:
-        """The load times a number."""
-        with IMPORTS:
-            from .arithmetic import multiple
-        return multiple(self, factor)
-
-    __rmul__ = __mul__
-
-    def __neg__(self) -> Any:
-        return self * -1.0
-
-    def __add__(self, other: Any) -> Any:
-        """The sum of two loads over the same thing."""
-        with IMPORTS:
-            from .arithmetic import total
-        return total(self, other)
-
-    def __sub__(self, other: Any) -> Any:
-        return self + -other if isinstance(other, Load) else NotImplemented
+    __array_ufunc__ = None  # NumPy's numbers leave a product to the load, see `arithmetic`
 
     def __repr__(self) -> str:
         return self.told(None if self.shown_in is None else self.values_in(self.shown_in))
@@ -133,12 +113,6 @@ class OverTheta(Load):
     def is_periodic(self) -> bool:
         """True where the load repeats after its period, as every table does."""
         return True
-
-    def shifted(self, angle: Any) -> "OverTheta":
-        """The load that lags by an angle: what it was at theta it is at theta + angle."""
-        with IMPORTS:
-            from .arithmetic import shifted
-        return shifted(self, angle)
 
     def __call__(self, theta: Any) -> Any:
         """The load at crank angles, in the units of the machine that made it, else in SI units."""

@@ -12,6 +12,7 @@ from ..mechanism.slips import UnitWarning
 from ..mechanism.typical import FARTHEST
 from ..support.shown import shown
 from ..units.system import Conversion
+from .arithmetic import attach_operators
 from .columns import Column, column_of, places_and_values
 from .function import FunctionOverTheta
 from .load import Load
@@ -272,6 +273,7 @@ class MakeOverStroke(Maker):
             return table_over_stroke(*columns, kind, dead_centre)
 
 
+attach_operators()
 over_theta = MakeOverTheta()
 over_Y = MakeOverY()
 over_stroke = MakeOverStroke()

@@ -329,3 +329,14 @@ def test_a_crank_that_does_not_turn_has_no_slower_stroke(ec):
     assert (one["status"], one["slow_stroke"]) == (1, 0)
     assert many["status"].tolist() == [1, 0]
     assert many["slow_stroke"].tolist() == [0, round(math.copysign(1.0, ec))]
+
+
+def test_velocities_without_a_speed_are_slopes_of_the_position():
+    machine = dx.Machine(ec=10, AB=75, BC=300, units="mm, deg, rpm")
+    found = machine.events()
+    assert found.units["V_inward"] == "mm/deg"
+    slopes = machine.evaluate("Y_wrt_theta", theta=np.linspace(0.0, 360.0, 36_001))
+    assert found["V_inward"] == pytest.approx(np.abs(slopes).max(), rel=1e-7)
+    at_speed = machine.events(omega0=300)
+    assert at_speed.units["V_inward"] == "mm/s"
+    assert at_speed["V_inward"] == pytest.approx(found["V_inward"] * 300 * 6, rel=1e-13)

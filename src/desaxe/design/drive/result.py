@@ -50,7 +50,7 @@ class Drive(Answer):
     def report(self) -> str:
         """The figures as text for a data sheet; angles in radians are shown in degrees."""
         if not self.units:  # pint quantities say their units themselves
-            return repr(self)
+            return super().__repr__()
         lines = [
             f"Drive over {'one turn' if self.turns == 1 else f'{self.turns} turns'}",
             f"  {', '.join(self.design())}",
@@ -119,7 +119,7 @@ class Drive(Answer):
             return f"{degrees(self[name]):.1f} deg"
         return f"{self[name]:.6g} {self.unit(name)}"
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         return self.report()
 
     def plot(self, ax: Any = None) -> Any:

@@ -1,5 +1,6 @@
 """`events`: the dead centres of a design, its strokes, and the extremes of its rod and slider."""
 
+from collections.abc import Mapping
 from math import copysign, inf, nan, pi
 from typing import Any
 
@@ -7,7 +8,7 @@ from ...evaluation.evaluate import evaluate
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
-from ...mechanism.quantity_units import units_by_name
+from ...mechanism.quantity_units import slopes_of, unit_of, units_by_name
 from ...mechanism.status import TurnStatus
 from ...runtime.request import as_number, check_common, with_known_inputs
 from ...support.answer import Answer
@@ -23,7 +24,7 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
     ec, AB, BC  lengths [m], numbers or texts with a unit or arrays, which broadcast like NumPy
     branch      +1 or -1
     omega0      constant speed of the crank [rad/s]; negative turns backwards. Without it the crank turns
-                forwards, and velocities are per rad/s of it [m/s per rad/s]
+                forwards, and velocities are per angle that it turns [m/rad]
 
     Returns a dict, floats for one design and arrays for many. Angles are in the turn from -pi/2 to
     3 pi/2, in which dead centres move without a jump when `ec` changes its sign:
@@ -59,6 +60,7 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
         (0.08879, 1.6737, 1)
     """
     check_common({}, branch)
+    units = _units_per_angle if omega0 is None else units_by_name
     given = {"ec": ec, "AB": AB, "BC": BC, "omega0": 1.0 if omega0 is None else omega0}
     numbers = {name: as_number(name, value, tuple(given), ("events",)) for name, value in given.items()}
     if None in numbers.values():
@@ -66,7 +68,7 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
             from .arrays import events_of_arrays
 
         found_of = events_of_arrays(given, int(branch), omega0 is not None)
-        return Answer(found_of, units_by_name, TurnStatus)
+        return Answer(found_of, units, TurnStatus)
     e, crank, rod, omega = (float(value or 0.0) for value in numbers.values())
     lengths, forward = {"ec": e, "AB": crank, "BC": rod}, -1 if omega < 0.0 else 1
     found = DesignEvents(closed_form(DEAD_CENTRES, branch=float(branch)).point(e, crank, rod, float(forward)))
@@ -81,7 +83,15 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
             value, theta, slopes = _velocity(ends, side, int(branch), omega, lengths, found.status == 2)
         result |= {name: value, f"theta_{name}": theta}
         gradient[name] = {p: slopes[p] for p in parameters}
-    return Answer({**result, "gradient": gradient, "status": found.status}, units_by_name, TurnStatus)
+    return Answer({**result, "gradient": gradient, "status": found.status}, units, TurnStatus)
+
+
+def _units_per_angle(found: Mapping[str, Any]) -> dict[str, Any]:
+    """The units of an answer without a speed, whose velocities are slopes of the position."""
+    units = units_by_name(found)
+    units |= dict.fromkeys(VELOCITIES, unit_of("Y", "theta"))
+    units["gradient"] |= {name: slopes_of("Y_wrt_theta", LENGTHS) for name in VELOCITIES}
+    return units
 
 
 def _velocity(
