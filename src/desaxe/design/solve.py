@@ -136,7 +136,8 @@ def _solutions(name: str, sought: Target, x: Array, here: Measured, reachable: t
         slope = here.gradient[name][order]
         gradient = {p: -v[order] / slope for p, v in here.gradient.items() if p != name and np.ndim(v)}
         gradient[_key(sought)] = 1.0 / slope
-    count = f"{x.size} solution{'s' if x.size > 1 else ''}"
+    ends = amount(sought.measure, reachable, "g", says_unit=True)
+    count = f"{x.size} solution{'s' if x.size > 1 else ''}; {text_of(sought.measure)} reaches " + ends
     answer = {name: x[order], "gradient": gradient, "reachable": reachable, "status": 0, "message": count}
     return _with_units(name, sought, answer)
 
