@@ -30,7 +30,7 @@ def _page(path):
 def _parts(cell):
     text = "".join(cell["source"])
     if cell["cell_type"] == "markdown":
-        yield text.replace("](../docs/", "](../")  # the site's root
+        yield text.replace("](../docs/", "](../").replace(".ipynb)", ".md)")  # as pages of the site
     elif text:
         yield f"```python\n{text}\n```"
         yield from map(_output, cell["outputs"])

@@ -107,7 +107,12 @@ def import_xarray(what: str = "a labelled result") -> Any:
     """The module xarray, with all that it imports itself when it makes its first Dataset."""
     with explained(what):
         xarray = import_whole("xarray")
-    finished(lambda: xarray.Dataset({"x": ("x", np.zeros(1))}))
+
+    def make_a_dataset() -> None:
+        with IMPORTS:
+            xarray.Dataset({"x": ("x", np.zeros(1))})
+
+    finished(make_a_dataset)
     return xarray
 
 
