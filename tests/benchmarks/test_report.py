@@ -4,6 +4,7 @@ import json
 import math
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -14,6 +15,8 @@ from benchmarks.picture import errors_over_time, time_over_points
 from benchmarks.race import Found, race, racers
 from benchmarks.report import BEGIN, END, digits, page, ratio, short_table, terminal, with_table
 from benchmarks.work import BY_KEY, WORKS
+
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture(scope="module")
@@ -87,9 +90,8 @@ def test_a_refusal_is_told_and_the_others_go_on():
 
 
 def run(*options):
-    return subprocess.run(
-        [sys.executable, "-m", "benchmarks", *options], capture_output=True, text=True, check=False
-    )
+    command = [sys.executable, "-m", "benchmarks", *options]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
 
 
 def test_the_list_names_works_and_contenders():
