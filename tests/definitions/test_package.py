@@ -70,6 +70,7 @@ def folder(tmp_path_factory):
     return folder
 
 
+@pytest.mark.thorough
 def test_it_answers_as_the_library_does(folder):
     done = subprocess.run(
         [sys.executable, "-c", SCRIPT, json.dumps([NAMES, POINT])],

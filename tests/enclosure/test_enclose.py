@@ -181,7 +181,6 @@ def test_boxes_one_ulp_wide(name):
         {"theta": between(1e6, 1e6 + 0.1)},
     ],
 )
-@pytest.mark.filterwarnings("ignore::desaxe.UnitWarning")  # theta = 100
 @pytest.mark.sampled
 @pytest.mark.parametrize("name", ["phi", "Y", "s", "a_C", "a_C_wrt_ec", "pressure_angle"])
 def test_where_the_program_changes_its_form(name, box):

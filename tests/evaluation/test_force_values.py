@@ -97,7 +97,6 @@ def rough(count):
         yield point | {"mu": 2.0 ** (number % 9 - 4)}
 
 
-@pytest.mark.filterwarnings("ignore::desaxe.UnitWarning")  # mu = 16
 def test_how_many_balances_of_forces_there_are():
     found = {0: 0, 1: 0, 2: 0}
     for point in rough(150):

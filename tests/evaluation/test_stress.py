@@ -230,7 +230,6 @@ def test_odd_numbers_in_a_column(name):
 @pytest.mark.sampled
 @given(st.fixed_dictionaries({name: st.sampled_from(REAL) for name in LAW}))
 @settings(max_examples=cases(60, 300), deadline=None)
-@pytest.mark.filterwarnings("ignore::desaxe.UnitWarning")
 def test_odd_numbers_do_not_crash(at):
     at = at | {"AB": abs(at["AB"]), "BC": max(abs(at["BC"]), 1e-60)}
     found = dx.evaluate([*NAMES, "status", "margin"], **at)

@@ -172,7 +172,9 @@ def test_numbers_and_integers_are_taken(group):
     assert all(np.ndim(found[name]) == 0 and found[name] == wanted[name] for name in OUTPUTS[group])
 
 
-@pytest.mark.parametrize("group", NAMES)
+@pytest.mark.parametrize(
+    "group", [name if name in ("position", "motion") else pytest.param(name, marks=pytest.mark.thorough) for name in NAMES]
+)
 def test_a_grid_a_point_and_a_loop_of_ones_own_give_what_arrays_give(group):
     """Designs of both forms; each axis is the innermost once, with read-only and strided inputs and outputs."""
     module = import_module(f"desaxe.generated.{group}")

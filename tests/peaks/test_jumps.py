@@ -13,7 +13,6 @@ from desaxe.loads.exact import Slider
 from tests.effort import cases
 from tests.peaks.pieces import DIGITS, SIGN, Stroke, Turn, closure_of, dead_centres, edges, sides, tops
 
-pytestmark = pytest.mark.filterwarnings("ignore::desaxe.UnitWarning")  # random forces on thin rods
 NAMES = ("T_in", "N_C", "F_B_Y", "F_B_X", "F_A_X", "F_C_Y", "power_in", "F_B", "F_shaking_Y")
 KINDS = ("absmax", "max", "min")
 BODIES = {"m_crank": 3.0, "m_rod": 2.0, "m_slider": 10.0, "I_rod": 0.01}

@@ -96,7 +96,6 @@ def refined(name, sign, theta, design):
 
 
 @pytest.mark.sampled
-@pytest.mark.filterwarnings("ignore::desaxe.UnitWarning")  # random forces on thin rods
 def test_peaks_with_friction_are_those_of_free_bodies():
     """Random designs of both branches that turn fully; values are finite where friction never jams."""
     for seed in range(cases(6, 40, 1000)):

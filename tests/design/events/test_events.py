@@ -147,7 +147,6 @@ lengths = st.floats(1e-3, 1e3)
 @given(AB=lengths, BC=lengths, share=st.floats(-1.0, 1.0))
 @example(AB=1.0, BC=2.0, share=1.0)
 @example(AB=1.0, BC=1.0, share=0.0)
-@pytest.mark.filterwarnings("ignore::desaxe.UnitWarning")  # a crank of 1024 m
 def test_symmetries(AB, BC, share):
     assume(BC >= AB)
     ec = share * (BC - AB)

@@ -99,7 +99,6 @@ def test_the_check_sees_an_error():
     assert not agrees("a_C", 1.0, math.nan, point)
 
 
-@pytest.mark.filterwarnings("ignore::desaxe.UnitWarning")
 @pytest.mark.parametrize(
     "lengths",
     [
