@@ -87,6 +87,8 @@ class March:
         """Run until the end time, or what comes before it."""
         try:
             self.top = FLOOR * sqrt(self._energy())
+            if self.top == inf:
+                self._fail(None, "the energy of the start is beyond every double")
             while self.status == NEVER:
                 law = self._law()
                 if law is not None:
