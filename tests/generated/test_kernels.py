@@ -261,6 +261,7 @@ for name in dict.fromkeys(({first!r}, "generated", "desaxe.generated")):
         ]
 
 
+@pytest.mark.thorough
 def test_a_copy_of_ones_own_may_have_any_name(tmp_path):
     shutil.copytree(ROOT / "generated", tmp_path / "generated", ignore=shutil.ignore_patterns("__pycache__"))
     code = "from generated import position; print(position.evaluate(0.0, 0.0, 0.1, 0.3)['Y'])"

@@ -139,6 +139,6 @@ def odd_folder(folder: Path, random: Random) -> Verdict:
 
 
 TRIALS = [
-    Trial("a damaged or foreign file in the cache", damaged, 1, 60),
+    Trial("a damaged or foreign file in the cache", damaged, 0, 60),
     Trial("an odd cache folder", odd_folder, 0, 28),
 ]

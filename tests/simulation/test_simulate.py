@@ -35,9 +35,10 @@ def kinds(result):
     ("design", "torque", "theta0", "omega_start"),
     [
         (PRESS, 0.25, 0.0, 0.0),
-        (LOADED, -0.5, 1.0, 12.0),
+        pytest.param(LOADED, -0.5, 1.0, 12.0, marks=pytest.mark.thorough),
         (LOADED, lambda t, theta, omega: omega * -0.1 + t * 2.0, 4.0, -3.0),
-        ({**PRESS, "ec": -0.16}, 0.25, 2.0, 5.0),  # 0.01 m from its change point
+        # 0.01 m from its change point
+        pytest.param({**PRESS, "ec": -0.16}, 0.25, 2.0, 5.0, marks=pytest.mark.thorough),
     ],
 )
 def test_the_end_of_a_motion(design, torque, theta0, omega_start):
