@@ -108,6 +108,10 @@ def test_the_units_of_a_machine():
     [
         (lambda: LINE + GAS, "loads over the same thing"),
         (lambda: DIE + GAS, "loads over the same thing"),
+        (
+            lambda: dx.over_theta([0, 1], ["1 N", "2 N"]) + dx.over_theta([0, 1], ["1 N m", "2 N m"]),
+            r"a load in N and one in N\*m do not add up",
+        ),
         (lambda: LINE * float("nan"), "the factor must be finite"),
         (lambda: LINE + 3, "unsupported operand"),
         (lambda: LINE * "2", "can't multiply|unsupported"),

@@ -191,7 +191,7 @@ def calls() -> dict[str, Call]:
             dx.over_theta,
             (),
             {"angles": [0.0, 1.0, 2.0], "values": [1.0, 2.0, 1.0]},
-            ("kind", "period"),
+            ("kind", "period", "bore", "area", "ambient"),
         ),
         "over_Y": Call(dx.over_Y, (), {"positions": [0.1, 0.2], "outward": [1.0, 2.0]}, ("inward", "kind")),
         "over_stroke": Call(
@@ -229,7 +229,9 @@ def calls() -> dict[str, Call]:
         "quantities": Call(dx.quantities, (), {}),
         "undefine": Call(dx.undefine, (), {"name": "of_no_fuzz"}),
         "harmonics of a design": Call(dx.harmonics, ("a_C",), dict(MACHINE), ("orders", "branch")),
-        "counterweight": Call(dx.counterweight, (), {"m_slider": 1.0, **MACHINE}, ("radius", "along")),
+        "counterweight": Call(
+            dx.counterweight, (), {"m_slider": 1.0, **MACHINE}, ("radius", "along", "balance")
+        ),
     }
 
 

@@ -231,3 +231,27 @@ def test_inputs_beyond_the_range_are_refused_by_name(inputs, limit):
     assert found["status"].tolist() == over.status.values[-1].tolist() == [0, 4]
     assert top["status"][1] == 4
     assert np.isnan([found["V_C"][1], over.V_C.values[-1, 1], top["value"][1]]).all()
+
+
+LINKS = {"AB": 0.1, "BC": 0.3}
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: dx.inverse(Y=0.3, ec=10**400, **LINKS), "ec = .*"),
+        (lambda: dx.crossings("a_C", value="x", ec=0.0, omega0=1.0, **LINKS), "value = 'x'"),
+        (lambda: dx.solve(over={"ec": (0.0, 0.1)}, stroke=0.2, where=[1.0], **LINKS), "where = .*a dict"),
+        (lambda: dx.solve(over={"ec": (0.0, 0.1)}, stroke=0.2, branch=[1j], **LINKS), "branch"),
+        (lambda: dx.enclose("Y", theta=1.0, ec=0.0, AB=0.1, BC=(None, 1.0)), "BC"),
+    ],
+)
+def test_bad_values_are_named(call, message):
+    with pytest.raises((TypeError, ValueError), match=message):
+        call()
+
+
+def test_no_designs_have_no_values():
+    assert dx.grid("a_C", theta=[0.0, 1.0], ec=0.0, AB=[], BC=0.3, omega0=1.0).a_C.size == 0
+    assert dx.crossings("V_C", ec=0.0, AB=[], BC=0.3, omega0=1.0)["theta"].shape == (0, 0)
+    assert dx.crossings("a_C", value=1e300, ec=0.0, omega0=1.0, **LINKS)["count"] == 0

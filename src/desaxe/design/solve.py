@@ -8,9 +8,11 @@ import numpy as np
 from ..mechanism.messages import amount
 from ..mechanism.quantity_units import unit_of
 from ..mechanism.status import SolveStatus
+from ..runtime.request import check_common
 from ..support.answer import Answer
 from ..support.deadline import Deadline
 from ..support.panels import Array, Panels, resolved
+from ..support.shown import shown
 from .measures import Measure, Measured, checked, is_named, measured, text_of
 from .optimisation.objectives import space_of, value_of
 from .optimisation.problem import Space
@@ -61,6 +63,7 @@ def solve(
         >>> [round(float(AB), 6) for AB in found["AB"]]
         [0.025]
     """
+    check_common({}, branch)
     sought, inputs = _sought(where, inputs)
     space = space_of(over, inputs, branch, Deadline("solve", timeout), "solve")
     if len(space.names) != 1:
@@ -98,6 +101,8 @@ def solve(
 def _sought(where: Mapping[Any, Any] | None, inputs: dict[str, Any]) -> tuple[Target, dict[str, Any]]:
     """The measure and its value, and the inputs without it."""
     named = {name: inputs.pop(name) for name in [*inputs] if is_named(name) and inputs[name] is not None}
+    if where is not None and not isinstance(where, Mapping):
+        raise TypeError(f"where = {shown(where)}: expected a dict, such as {{('absmax', 'a_C'): 900.0}}")
     every = {**(where or {}), **named}
     if len(every) != 1:
         asked = f"got {', '.join(text_of(checked(key)) for key in every)}" if every else "got none"

@@ -55,6 +55,8 @@ def total(one: Load, other: Any) -> Any:
     """The sum of two loads over the same thing."""
     if not isinstance(other, Load):
         return NotImplemented
+    if one.unit is not None and other.unit is not None and one.unit != other.unit:
+        raise TypeError(f"{one!r} + {other!r}: a load in {one.unit} and one in {other.unit} do not add up")
     if isinstance(one, TableOverTheta) and isinstance(other, TableOverTheta) and one.unit == other.unit:
         table = _sum(one.table, other.table, one.kind if one.kind == other.kind else "")
         if table is not None:

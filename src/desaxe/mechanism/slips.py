@@ -5,6 +5,7 @@ their elements. A force has no size of its own by which a slip would show; but n
 rod could carry.
 """
 
+import sys
 import warnings
 from collections.abc import Iterator, Mapping
 from math import isclose, pi
@@ -88,7 +89,7 @@ def _offset(ec: Any, units: UnitSystem, inputs: Mapping[str, Any]) -> Iterator[S
     """An offset that is tiny beside the crank, and none in metres, or in metres and far beyond both links."""
     conversion, AB, BC = units.of("ec"), inputs.get("AB"), inputs.get("BC")
     ec = plain_number(ec) if isinstance(ec, str) else ec
-    if type(ec) not in (int, float) or type(AB) is not float:
+    if type(ec) not in (int, float) or type(AB) is not float or abs(ec) > sys.float_info.max:
         return
     si = abs(conversion.to_si(float(ec)))
     if conversion.si != 1 and 0.0 < si < SMALL_OFFSET * AB < abs(ec):
@@ -102,7 +103,7 @@ def _forces(inputs: Mapping[str, Any], units: UnitSystem) -> Iterator[Slip]:
     """Forces, numbers and tables, that no rod of this length could carry."""
     length = inputs.get("BC", 0.0)
     if isinstance(length, tuple) or getattr(length, "ndim", 0) == 1:
-        length = max(length, default=0.0)
+        length = max((one for one in length if isinstance(one, (int, float))), default=0.0)
     if not isinstance(length, (int, float)) or not SHORTEST < length <= FARTHEST:
         return
     for name in FORCES:

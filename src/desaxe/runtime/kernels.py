@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from itertools import product
-from math import inf, prod
+from math import inf, nan, prod
 from typing import Any, NamedTuple
 
 from ..compiler.builder import function_text
@@ -263,7 +263,9 @@ def all_have_wide_margins(form: Variant, ec: Any, AB: Any, BC: Any) -> bool:
 
 
 def _extremes(values: Any) -> tuple[float, ...]:
-    """The smallest and the largest element; NaN if one is NaN."""
+    """The smallest and the largest element; NaN if one is NaN, or there is none."""
+    if not getattr(values, "size", 1):
+        return (nan,)
     return (values,) if isinstance(values, float) else (float(values.min()), float(values.max()))
 
 

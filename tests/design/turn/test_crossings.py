@@ -116,3 +116,12 @@ def test_the_units_of_a_machine():
     assert machine.evaluate("V_C", theta=found["theta"]) == pytest.approx([500.0, 500.0], rel=1e-12)
     with pytest.raises(TypeError, match="theta is the answer"):
         machine.crossings("V_C", theta=1)
+
+
+def test_a_turn_that_repeats_no_other_is_refused():
+    with pytest.raises(TypeError, match="crossings: alpha: no turn repeats"):
+        dx.crossings("V_C", alpha=5.0, **MACHINE)
+    steady = dx.crossings("V_C", omega0=10.0, **LENGTHS)
+    assert (
+        dx.crossings("V_C", omega0=10.0, alpha=0.0, **LENGTHS)["theta"].tolist() == steady["theta"].tolist()
+    )

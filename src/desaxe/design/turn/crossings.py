@@ -16,7 +16,7 @@ from ...mechanism.names import LENGTHS, sensitivity
 from ...mechanism.quantity_units import slopes_of, unit_of
 from ...mechanism.read import read_array
 from ...mechanism.status import CrossingStatus
-from ...runtime.request import as_number, check_common
+from ...runtime.request import as_number, check_common, is_steady
 from ...support.answer import Answer
 from ...support.panels import Array, Panels
 from .cycle import MOST_TURNS, Cycle
@@ -70,10 +70,12 @@ def crossings(name: str, *, value: Any = 0.0, branch: int = 1, **inputs: Any) ->
         >>> [round(float(angle), 6) for angle in reversal["theta"]], round(reversal["share"], 6)
         ([0.0, 3.141593], 0.5)
     """
-    row = Input(name, quantity(name, inputs.get("omega") is not None).unit, "")
+    row = Input("value", quantity(name, inputs.get("omega") is not None).unit, "")
     check_common({}, branch)
     if inputs.pop("theta", None) is not None:
         raise TypeError("crossings: theta is the answer; the cycle is that of crank and loads")
+    if inputs.get("omega") is None and not is_steady(inputs.get("alpha", 0.0)):
+        raise TypeError("crossings: alpha: no turn repeats the one before; give the state, omega and alpha")
     numbers, loads = loads_of({key: v for key, v in inputs.items() if v is not None})
     for length in LENGTHS:
         if length not in numbers:
@@ -115,7 +117,7 @@ def _of_one(cycle: Cycle, name: str, level: float) -> tuple[Crossings, int]:
     one = Panels(edges, {name: height})
     sampled = one.samples(height)
     roots = one.roots(height)
-    roots = np.append(roots, edges[:1]) if sampled[0] * sampled[-1] < 0.0 else roots
+    roots = np.append(roots, edges[:1]) if np.sign(sampled[0]) * np.sign(sampled[-1]) < 0.0 else roots
     theta = _odd(np.sort((roots - edges[0]) % cycle.angle), cycle.angle) + edges[0]
     ends = one.ends(height)
     jumps = np.roll(ends[:, 1], 1) - ends[:, 0]  # at the start of each panel: before - after
@@ -170,7 +172,7 @@ def _answer(
     branch: int,
     turns: int,
 ) -> Answer:
-    most = max(one.theta.size for one in found)
+    most = max((one.theta.size for one in found), default=0)
     columns = {key: np.full((len(found), most), np.nan) for key in ("theta", "rising", "side")}
     for k, one in enumerate(found):
         for key, column in columns.items():

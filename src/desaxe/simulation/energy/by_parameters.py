@@ -133,7 +133,8 @@ def _begin(designs: Designs, known: Mapping[str, Array]) -> Array:
             of_M[:, k] = known[f"M_eff_wrt_{p}"][:, 0]
     of_M += known["M_eff_wrt_theta"][:, :1] * theta_p
     begin = np.zeros((*of_M.shape, 5))
-    begin[..., 2] = 0.5 * omega * omega * of_M + known["M_eff"][:, :1] * omega * omega_p
+    with np.errstate(over="ignore", invalid="ignore"):  # a speed beyond every double ends with a status
+        begin[..., 2] = 0.5 * omega * omega * of_M + known["M_eff"][:, :1] * omega * omega_p
     if not half.any():
         begin[..., 0], begin[..., 1], begin[..., 3] = theta_p, omega_p, omega
         return begin

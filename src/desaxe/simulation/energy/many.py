@@ -132,7 +132,8 @@ def _tried(
     count, inertia = len(fields.edges), fields.inertia[:, 0]
     begin = np.argmax(fields.edges == designs.coordinates(designs.theta0)[:, None], axis=1)
     setup = np.empty((count, 6))
-    setup[:, 0] = energy = 0.5 * inertia * designs.omega_start**2
+    with np.errstate(over="ignore"):  # a speed beyond every double ends with a status
+        setup[:, 0] = energy = 0.5 * inertia * designs.omega_start**2
     setup[:, 1], setup[:, 3] = begin, np.where(designs.half == 0.0, designs.period, 0.0)
     setup[:, 2] = way = _ways(designs, fields, begin)
     setup[:, 4], setup[:, 5] = 0.0 if designs.turns_with_the_slider else 1.0, fields.back
