@@ -90,7 +90,7 @@ def solution() -> dict[str, sp.Expr]:
     """The joint forces, the guide's normal force and the torque, with friction as a given force."""
     (values,) = sp.linsolve(newton_euler(), [symbol(name) for name in JOINTS])
     forces = dict(zip(JOINTS, values, strict=True))
-    return {**forces, **_on_the_frame(forces), **_energies()}
+    return {**forces, **_on_the_frame(forces), **_inertia(), **_energies()}
 
 
 def _on_the_frame(forces: dict[str, sp.Expr]) -> dict[str, sp.Expr]:
@@ -99,6 +99,15 @@ def _on_the_frame(forces: dict[str, sp.Expr]) -> dict[str, sp.Expr]:
     shaking = -sp.Matrix([forces["F_A_X"], forces["F_A_Y"]]) - guide
     about_A = -forces["T_in"] - moment(POSITIONS["C"], guide)
     return {"F_shaking_X": shaking[0], "F_shaking_Y": shaking[1], "M_shaking": about_A}
+
+
+def _inertia() -> dict[str, sp.Expr]:
+    """The rates of momentum and of angular momentum about A, reversed."""
+    rates = {name: mass * _ACCELERATIONS[name] for name, mass in MASSES.items()}
+    X, Y = sum(rates.values(), sp.zeros(2, 1))
+    spins = I_crank * alpha - branch * I_rod * KINEMATICS[symbol("alpha_BC")]
+    about_A = sp.Add(*(moment(POSITIONS[name], rate) for name, rate in rates.items()), spins)
+    return {"F_inertia_X": -X, "F_inertia_Y": -Y, "M_inertia": -about_A}
 
 
 def _energies() -> dict[str, sp.Expr]:

@@ -35,8 +35,8 @@ from .stable import assembled, cos_theta, eq, le, lt, sec_phi, select, sin_theta
 
 FORCES = (
     "T_in", "F_A_X", "F_A_Y", "F_B_X", "F_B_Y", "F_C_X", "F_C_Y", "N_C", "F_friction", "F_shaking_X",
-    "F_shaking_Y", "M_shaking", "power_in", "F_A", "F_B", "F_C", "P_friction", "kinetic_energy",
-    "potential_energy", "M_eff", "m_rotating", "m_reciprocating", "I_lumping",
+    "F_shaking_Y", "M_shaking", "F_inertia_X", "F_inertia_Y", "M_inertia", "power_in", "F_A", "F_B", "F_C",
+    "P_friction", "kinetic_energy", "potential_energy", "M_eff", "m_rotating", "m_reciprocating", "I_lumping",
 )  # fmt: skip
 
 LUMPS = FORCES[-3:]  # of the links alone, without a mechanism
@@ -219,13 +219,19 @@ def _define_magnitudes(sheet: Sheet) -> None:
 
 
 def _define_frame(sheet: Sheet) -> None:
-    """Shaking force and moment on the frame: loads less inertia forces."""
+    """Shaking force and moment on the frame, loads less inertia forces; and those of inertia alone."""
     m_total = sheet.define("m_total", m_turning + m_reciprocating, unit=MASS, meaning="mass of all links")
     sheet.define("F_shaking_X", m_total * g_X + F_X - swing * crank_X, unit=FORCE,
                  meaning="force of the mechanism on the frame along X")  # fmt: skip
     sheet.define("F_shaking_Y", m_total * g_Y + F_Y - swing * crank_Y - m_reciprocating * a_C, unit=FORCE,
                  source="B (46)", meaning="force of the mechanism on the frame along Y")  # fmt: skip
     spun = I_turning * alpha + branch * I_lumping * alpha_BC
+    sheet.define("F_inertia_X", -swing * crank_X, unit=FORCE,
+                 meaning="force of moving masses on the foundation along X")  # fmt: skip
+    sheet.define("F_inertia_Y", -swing * crank_Y - m_reciprocating * a_C, unit=FORCE,
+                 meaning="force of moving masses on the foundation along Y")  # fmt: skip
+    sheet.define("M_inertia", -ec * m_reciprocating * a_C - spun, unit=TORQUE,
+                 meaning="moment of moving masses on the foundation, about A")  # fmt: skip
     pulled = Y * (m_reciprocating * g_X + F_X) + ec * (m_reciprocating * (g_Y - a_C) + F_Y)
     weight = swing * (g_X * cos_theta - g_Y * sin_theta)
     sheet.define("M_shaking", weight + pulled - spun, unit=TORQUE,
@@ -241,7 +247,7 @@ def _define_energies(sheet: Sheet) -> None:
 
 
 # What is held against the solved free bodies; N_C with friction as a given force.
-PROVED = {name: symbol(name) for name in FORCES[:12] if name not in ("N_C", "F_friction")}
+PROVED = {name: symbol(name) for name in FORCES[:15] if name not in ("N_C", "F_friction")}
 PROVED |= {"N_C": side_push - m_reciprocating * g_X - F_X}
 PROVED |= {name: symbol(name) for name in ("M_eff", "potential_energy")}
 

@@ -22,7 +22,7 @@ from tests.oracle.force_points import AT_REST, CENTRES, POINTS, agree, numbers
 FORCE, TORQUE = (1, 1, 2), (1, 2, 2)
 DEGREES = {
     **dict.fromkeys(FORCES, FORCE),
-    **dict.fromkeys(("T_in", "M_shaking", "kinetic_energy", "potential_energy"), TORQUE),
+    **dict.fromkeys(("T_in", "M_shaking", "M_inertia", "kinetic_energy", "potential_energy"), TORQUE),
     **dict.fromkeys(("m_rotating", "m_reciprocating"), (1, 0, 0)),
     **{"power_in": (1, 2, 3), "P_friction": (1, 2, 3), "M_eff": (1, 2, 0), "I_lumping": (1, 2, 0)},
 }
@@ -35,8 +35,9 @@ OF_INPUTS = {
 }
 # What changes its sign in the mirror X -> -X, and in the mirror Y -> -Y, which exchanges the branches.
 ODD_IN_X = {"theta", "ec", "omega0", "alpha", "F_X", "g_X", "T_in", "M_shaking", "N_C"}
-ODD_IN_X |= {"F_A_X", "F_B_X", "F_C_X", "F_shaking_X"}
+ODD_IN_X |= {"F_A_X", "F_B_X", "F_C_X", "F_shaking_X", "F_inertia_X", "M_inertia"}
 ODD_IN_Y = {"T_in", "M_shaking", "F_friction", "F_A_Y", "F_B_Y", "F_C_Y", "F_shaking_Y"}
+ODD_IN_Y |= {"F_inertia_Y", "M_inertia"}
 
 
 def parity(name, odd):

@@ -87,10 +87,15 @@ def newton(at, side):
     found["F_friction"] = -friction * found["N_C"]
     found["power_in"] = found["T_in"] * speed(at)
     whole = crank + rod + slider
+    still = list(momentum(at | {"g_X": 0, "g_Y": 0}, moving))
+    inertia = -sum((force for force, _ in still), mpmath.matrix([0, 0]))
     return found | {
         "F_shaking_X": at["F_X"] - whole[0],
         "F_shaking_Y": at["F_Y"] - whole[1],
         "M_shaking": -(found["T_in"] + C_Y * found["N_C"] - C_X * found["F_friction"]),
+        "F_inertia_X": inertia[0],
+        "F_inertia_Y": inertia[1],
+        "M_inertia": -sum(turning for _, turning in still),
         "kinetic_energy": kinetic_energy(at, moving),
     }
 

@@ -41,9 +41,10 @@ STATE_PARAMETERS = (*STATE, *OTHERS)
 TOUCHED = ("T_in", "F_A_X", "F_A_Y", "F_B_X", "F_B_Y", "F_C_X", "F_C_Y", "N_C", "F_friction", "power_in")
 MAGNITUDES = ("F_A", "F_B", "F_C", "P_friction")  # of what friction touches
 SHAKING = ("F_shaking_X", "F_shaking_Y", "M_shaking")
+INERTIA = ("F_inertia_X", "F_inertia_Y", "M_inertia")
 ENERGIES = ("kinetic_energy", "potential_energy", "M_eff")
 MASSES = ("m_rotating", "m_reciprocating", "I_lumping")
-FORCES = (*TOUCHED[:-1], *SHAKING, "power_in", *MAGNITUDES, *ENERGIES, *MASSES)
+FORCES = (*TOUCHED[:-1], *SHAKING, *INERTIA, "power_in", *MAGNITUDES, *ENERGIES, *MASSES)
 
 Vector = tuple[Jet, Jet]
 Equation = tuple[dict[str, Jet], Jet]  # unknown -> coefficient, and the right-hand side
@@ -260,6 +261,23 @@ def _shaking(at: Point, bits: int) -> dict[str, Jet] | None:
         }
 
 
+@lru_cache(maxsize=256)
+def _inertia(at: Point, bits: int) -> dict[str, Jet] | None:
+    """The rates of the momentum and of the angular momentum about A of the three bodies, reversed."""
+    mechanism = _mechanism(at, bits)
+    if mechanism is None:
+        return None
+    with precision(bits):
+        given = mechanism.given
+        nothing = Jet({}, given["AB"].order)
+        X, Y = nothing, nothing
+        M = given["I_crank"] * mechanism.theta.rate(2) + given["I_rod"] * _rod_turn(mechanism)
+        for mass, (x, y) in zip(BODIES[:3], (mechanism.crank, mechanism.rod, mechanism.C), strict=True):
+            force_X, force_Y = given[mass] * x.rate(2), given[mass] * y.rate(2)
+            X, Y, M = X + force_X, Y + force_Y, M + y.rate(0) * force_X - x.rate(0) * force_Y
+        return {name: rate.times(-1) for name, rate in zip(INERTIA, (X, Y, M), strict=True)}
+
+
 def _kinetic_energy(mechanism: Mechanism) -> Jet:
     """Half of mass times speed squared, of the centres; half of inertia times turning speed squared."""
     given, (B_X, B_Y), (C_X, C_Y) = mechanism.given, mechanism.B, mechanism.C
@@ -303,6 +321,7 @@ def _masses(at: Point, bits: int) -> dict[str, Jet]:
 _GROUPS: dict[str, Callable[[Point, int], dict[str, Jet] | None]] = {
     **dict.fromkeys((*TOUCHED, *MAGNITUDES), _touched),
     **dict.fromkeys(SHAKING, _shaking),
+    **dict.fromkeys(INERTIA, _inertia),
     **dict.fromkeys(ENERGIES, _energies),
     **dict.fromkeys(MASSES, _masses),
 }
