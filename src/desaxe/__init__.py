@@ -14,27 +14,8 @@ from .support.interrupts import import_whole as _import_whole
 from .support.version import version as _version
 
 if TYPE_CHECKING:
-    from . import plot as plot
     from .definitions.define import define as define
     from .definitions.define import undefine as undefine
-    from .design.design_map import design_map as design_map
-    from .design.drive.drive import drive as drive
-    from .design.events.events import events as events
-    from .design.feasibility.feasibility import feasibility as feasibility
-    from .design.fit.fit import fit as fit
-    from .design.inverse import inverse as inverse
-    from .design.optimisation.optimize import optimize as optimize
-    from .design.solve import solve as solve
-    from .design.steady.steady import steady as steady
-    from .design.synthesis.synthesize import synthesize as synthesize
-    from .design.tolerance.tolerance import tolerance as tolerance
-    from .design.turn.counterweight import counterweight as counterweight
-    from .design.turn.crossings import crossings as crossings
-    from .design.turn.harmonics import harmonics as harmonics
-    from .enclosure.enclose import enclose as enclose
-    from .evaluation.evaluate import evaluate as evaluate
-    from .evaluation.function import function as function
-    from .evaluation.grid import grid as grid
     from .loads import LoadWarning as LoadWarning
     from .loads import over_stroke as over_stroke
     from .loads import over_theta as over_theta
@@ -46,13 +27,75 @@ if TYPE_CHECKING:
     from .mechanism.ranges import between as between
     from .mechanism.ranges import plus_minus as plus_minus
     from .mechanism.slips import UnitWarning as UnitWarning
-    from .peaks.peak import peak as peak
     from .scenes.explain.explain import explain as explain
-    from .scenes.explorer.explore import explore as explore
     from .scenes.export.compile import compile as compile
     from .scenes.scene import scene as scene
-    from .scenes.sweep import sweep as sweep
-    from .simulation.simulate import simulate as simulate
+    from .typed import (
+        counterweight as counterweight,
+    )
+    from .typed import (
+        crossings as crossings,
+    )
+    from .typed import (
+        design_map as design_map,
+    )
+    from .typed import (
+        drive as drive,
+    )
+    from .typed import (
+        enclose as enclose,
+    )
+    from .typed import (
+        evaluate as evaluate,
+    )
+    from .typed import (
+        events as events,
+    )
+    from .typed import (
+        explore as explore,
+    )
+    from .typed import (
+        feasibility as feasibility,
+    )
+    from .typed import (
+        fit as fit,
+    )
+    from .typed import (
+        function as function,
+    )
+    from .typed import (
+        grid as grid,
+    )
+    from .typed import (
+        harmonics as harmonics,
+    )
+    from .typed import (
+        inverse as inverse,
+    )
+    from .typed import (
+        optimize as optimize,
+    )
+    from .typed import (
+        peak as peak,
+    )
+    from .typed import (
+        simulate as simulate,
+    )
+    from .typed import (
+        solve as solve,
+    )
+    from .typed import (
+        steady as steady,
+    )
+    from .typed import (
+        sweep as sweep,
+    )
+    from .typed import (
+        synthesize as synthesize,
+    )
+    from .typed import (
+        tolerance as tolerance,
+    )
 
 # Public name -> its module; `equation` is SymPy's and comes with the extra `derive`.
 PUBLIC = {

@@ -105,6 +105,45 @@ def run_console(text, capsys):
         assert capsys.readouterr().out, line
 
 
+# A page is a session: names are bound anew, and the reader's own functions have no annotations.
+TYPES = (
+    "--allow-redefinition-new", "--local-partial-types", "--allow-untyped-defs", "--allow-untyped-calls",
+    "--disable-error-code=import-not-found", "--disable-error-code=import-untyped",
+)  # fmt: skip
+ANSWERS = """
+from typing import Any, assert_type
+
+import numpy as np
+from numpy.typing import NDArray
+
+import desaxe as dx
+
+lengths = {"ec": 0.01, "AB": 0.125, "BC": 0.35}
+Floats = NDArray[np.float64]
+angles: Floats = np.linspace(0.0, 1.0)
+assert_type(dx.evaluate("Y", theta=1.0, ec=0.01, AB=0.125, BC=0.35), float)
+assert_type(dx.evaluate(["Y", "V_C"], theta=1.0, branch=-1), dict[str, float])
+assert_type(dx.evaluate("Y", theta=angles, ec="10 mm"), Floats)
+assert_type(dx.evaluate(["Y"], theta=angles), dict[str, Floats])
+assert_type(dx.evaluate("Y", theta=1.0, **lengths), Any)
+dx.peak("a_C", omega0=150, **lengths)["value"]
+"""
+
+
+@pytest.mark.thorough
+def test_its_code_has_types(tmp_path):
+    """mypy --strict finds nothing in the code of the pages, and knows the types of answers."""
+    for page in WITH_BLOCKS:
+        blocks = BLOCK.finditer((ROOT / page).read_text(encoding="utf-8"))
+        code = "\n".join(block["text"] for block in blocks if block[1] == "python")
+        (tmp_path / f"page_{Path(page).stem.replace('-', '_')}.py").write_text(code, encoding="utf-8")
+    (tmp_path / "page_types.py").write_text(ANSWERS, encoding="utf-8")
+    command = [sys.executable, "-m", "mypy", "--config-file", "pyproject.toml", *TYPES]
+    files = sorted(tmp_path.glob("*.py"))
+    done = subprocess.run([*command, *files], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+
+
 def test_every_block_that_could_run_does():
     """The kinds of blocks that are left are for reading."""
     left = {}

@@ -34,7 +34,7 @@ def grid(
     out: None = None,
     reduce: Any = None,
     chunks: Any = None,
-    **inputs: Unpack[Inputs],
+    **inputs: Unpack[Inputs[Any]],
 ) -> "xr.Dataset": ...
 
 
@@ -46,7 +46,7 @@ def grid(
     accuracy: str | float = "standard",
     threads: int | None = None,
     out: Array | Mapping[str, Array],
-    **inputs: Unpack[Inputs],
+    **inputs: Unpack[Inputs[Any]],
 ) -> dict[str, Array]: ...
 
 

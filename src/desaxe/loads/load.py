@@ -43,6 +43,7 @@ class Load(ABC):
     parameters: tuple[str, ...] = ("theta",)  # that the load depends on
     centre = ""  # the dead centre from which positions are measured: the name of its position
     unit: str | None = None
+    __call__: Callable[..., Any]  # the load at angles, or at positions and ways
     plain: tuple[str, ...] = ()
     shown_in: "UnitSystem | None" = None  # of the machine that made it, in which it is called and shown
 

@@ -109,7 +109,7 @@ class Machine(Mapping[str, Any]):
         source: Mapping[str, Any] | None = None,
         /,
         *,
-        units: str | Mapping[str, str] | UnitSystem | None = None,
+        units: Any = None,  # a text, a mapping or a UnitSystem; Any, so that **inputs of numbers have types
         **inputs: Any,
     ) -> None:
         if source is not None and not isinstance(source, Mapping):

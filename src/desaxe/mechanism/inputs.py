@@ -1,7 +1,9 @@
 """The inputs of the mechanism: what each is, its unit, its limits."""
 
 from math import inf
-from typing import Any, NamedTuple, TypedDict
+from typing import Generic, NamedTuple, TypedDict, TypeVar
+
+V = TypeVar("V")
 
 
 class Input(NamedTuple):
@@ -16,28 +18,28 @@ class Input(NamedTuple):
     section: str = ""  # of a scene, in which it stands
 
 
-class Inputs(TypedDict, total=False):
+class Inputs(TypedDict, Generic[V], total=False):
     """The inputs as keyword arguments, for editors and type checkers; a test compares them with INPUTS."""
 
-    theta: Any
-    ec: Any
-    AB: Any
-    BC: Any
-    omega0: Any
-    alpha: Any
-    omega: Any
-    m_crank: Any
-    m_rod: Any
-    m_slider: Any
-    I_crank: Any
-    I_rod: Any
-    r_crank: Any
-    r_rod: Any
-    F_X: Any
-    F_Y: Any
-    g_X: Any
-    g_Y: Any
-    mu: Any
+    theta: V
+    ec: V
+    AB: V
+    BC: V
+    omega0: V
+    alpha: V
+    omega: V
+    m_crank: V
+    m_rod: V
+    m_slider: V
+    I_crank: V
+    I_rod: V
+    r_crank: V
+    r_rod: V
+    F_X: V
+    F_Y: V
+    g_X: V
+    g_Y: V
+    mu: V
 
 
 TINY = 5e-324  # the least number that is more than nothing: a rod of 0 is no rod

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from ..evaluation.evaluate import evaluate
 from ..evaluation.in_units import in_units
@@ -14,15 +14,12 @@ from ..support.shown import printable
 from .content import Check, Content, Peak, PictureRequest
 from .parts.extremes import PeakResult, batches, groups_of, peaks_of
 from .parts.grid import blocks_of, values_of_grid
-from .parts.motor import MotorResult, steady_of
+from .parts.motor import steady_of
 from .parts.pictures import draw
 from .parts.stored import sweep_content
 from .parts.turning import FeasibilityResult, feasibility_of
 from .stores.files import store_group, write
 from .stores.places import require_modules, require_places
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 MOST_BATCHES = 1_000  # of peaks that a run shows beside a store
 FAILURES = (OSError, ValueError, RuntimeError, MemoryError)  # of a file that cannot be written
@@ -40,13 +37,13 @@ class CheckResult(NamedTuple):
 class Run:
     """The results of a run; `failures` lists the files that could not be written, with reasons."""
 
-    dataset: "xr.Dataset | None"
+    dataset: Any  # an xarray.Dataset; None where nothing is requested
     checks: tuple[CheckResult, ...]
     peaks: tuple[PeakResult, ...]
     feasibility: FeasibilityResult | None
     files: tuple[Path, ...] = ()
     failures: tuple[str, ...] = ()
-    steady: MotorResult | None = None
+    steady: Any = None  # a MotorResult; None without a motor
 
 
 def steps_of(content: Content, watch: Progress | None) -> Steps:
