@@ -106,7 +106,7 @@ def room_of(name):
 def arrows():
     """Each import of one module of the library by another: (importing module, imported name)."""
     for module, name in imports_of("desaxe"):
-        if is_in(name, "desaxe") and module not in ("desaxe", "desaxe.__main__"):
+        if is_in(name, "desaxe") and module not in ("desaxe", "desaxe.__main__", "desaxe.typed"):
             yield module, name
 
 
