@@ -1,4 +1,4 @@
-"""What a release is made of: the contract, the workflow and forms of the repository, the citation."""
+"""Files of a release: the workflow and forms of the repository, the citation, the version."""
 
 import re
 import subprocess
