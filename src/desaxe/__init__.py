@@ -117,7 +117,7 @@ PUBLIC = {
     "crossings": "desaxe.design.turn.crossings",
     "drive": "desaxe.design.drive.drive",
     "explore": "desaxe.scenes.explorer.explore",
-    "to_excel": "desaxe.machine.excel",
+    "to_excel": "desaxe.scenes.stores.workbook",
     "Machine": "desaxe.machine.machine",
     "UnitWarning": "desaxe.mechanism.slips",
     "fit": "desaxe.design.fit.fit",

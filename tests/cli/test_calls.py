@@ -20,9 +20,9 @@ WORDS = f"{LENGTHS} omega0=157 m_slider=1kg"
 # The words of a command, and the same call in Python.
 SAME = {
     "evaluate a_C,V_C theta=0deg:90deg:4": lambda m: m.evaluate(
-        ["a_C", "V_C"], theta=np.radians([0.0, 30.0, 60.0, 90.0])
+        ["a_C", "V_C", "status"], theta=np.radians([0.0, 30.0, 60.0, 90.0])
     ),
-    "evaluate a_C theta=1 branch=-1": lambda m: dx.evaluate(["a_C"], theta=1.0, **m.replace(branch=-1)),
+    "evaluate a_C theta=1 branch=-1": lambda m: m.replace(branch=-1).evaluate(["a_C", "status"], theta=1.0),
     "grid a_C theta=0,1,2 reduce.theta=absmax": lambda m: m.grid(
         ["a_C"], theta=[0.0, 1.0, 2.0], reduce={"theta": "absmax"}
     ),

@@ -46,10 +46,10 @@ sweep {}.toml --store {}.zarr
 sweep {}.toml --store folder{}
 sweep {}.toml --store {}.toml
 sweep {}.toml --store {}.zarr --netcdf {}.txt
-fit {}.toml {}.csv
-fit {} {}
-fit {}.toml {}.toml
-fit {}.toml {}.csv --picture {}.toml
+fit {}.csv --machine {}.toml over=ec
+fit {} --machine {}
+fit {}.toml --machine {}.toml over=ec
+fit {}.csv --machine {}.toml over=ec -o {}.toml
 derive --quantities {}.toml -o {}
 derive --quantities {} -o own
 derive --quantities own{}.toml -o {}
@@ -58,8 +58,8 @@ derive --quantities own{}.toml -o package
 derive --quantities own{}.toml -o folder{} --check
 derive --quantities own{}.toml
 derive --quantities {} {}
-point {}
-point a_C theta={}
+evaluate {}
+evaluate a_C theta={}
 run {} {}
 cache {}
 {}

@@ -50,14 +50,14 @@ def test_answers_in_the_units_of_a_machine(tmp_path):
     assert found["value"] == (pytest.approx(peak["value"]), "N*m")
     assert found["theta"] == (30, "deg")
     assert found["side"] == (-1, None)
-    assert found["gradient ec"] == (pytest.approx(peak["gradient"]["ec"]), "N*m/mm")
+    assert found["gradient.ec"] == (pytest.approx(peak["gradient"]["ec"]), "N*m/mm")
     drive = numbers(dx.to_excel(LOADED.drive(), tmp_path / "b.xlsx"))
     assert drive["torque_peak"][1] == "N*m"
     assert drive["ec"] == (LOADED.in_units()["ec"], "mm")
-    assert drive["gradient torque_rms ec"][1] == "N*m/mm"
+    assert drive["gradient.torque_rms.ec"][1] == "N*m/mm"
     spread = LOADED.tolerance("a_C", theta=60, ec="10 +- 0.1", samples=100)
     found = numbers(dx.to_excel(spread, tmp_path / "c.xlsx"))
-    assert found["first_order std"] == (pytest.approx(spread["first_order"]["std"]), "mm/s^2")
+    assert found["first_order.std"] == (pytest.approx(spread["first_order"]["std"]), "mm/s^2")
     head, *rows = sheets(dx.to_excel(PRESS.evaluate(["a_C"], theta=[0, 90]), tmp_path / "d.xlsx"))["values"]
     assert (head, len(rows)) == (["a_C [mm/s^2]"], 2)
 
@@ -71,7 +71,7 @@ def test_answers_of_functions_are_in_si_units(tmp_path):
     np.testing.assert_allclose(np.array(rows, float), np.array([theta, found["a_C"], found["V_C"]]).T, 1e-14)
     assert numbers(path, "numbers")["omega0"] == (3, "rad/s")
     peak = dx.to_excel(dx.peak("a_C", ec=[0.0, 0.01], AB=0.05, BC=0.2, omega0=3), tmp_path / "b.xlsx")
-    assert "gradient BC [1/s^2]" in sheets(peak)["values"][0]
+    assert "gradient.BC [1/s^2]" in sheets(peak)["values"][0]
     said = dx.to_excel({"a_C": 5.0}, tmp_path / "c.xlsx", units="mm, deg, rpm")
     assert numbers(said)["a_C"] == (5, "mm/s^2")
 

@@ -143,7 +143,7 @@ def test_a_pipe_is_neither_replaced_nor_read(tmp_path, capsys, monkeypatch):
     for name in ("a.png", "a.c", "a.html", "b.csv"):
         os.mkfifo(name)
     for overwrite in ([], ["--overwrite"]):
-        assert main(["fit", "a.toml", "a.csv", "--over", "AB", "--picture", "a.png", *overwrite]) == 2
+        assert main(["fit", "a.csv", "--machine", "a.toml", "over=AB", "-o", "a.png", *overwrite]) == 2
         assert "a.png: this is a pipe" in capsys.readouterr().err
     for call in (
         lambda: dx.compile(scene, "a.c", to="c"),

@@ -116,8 +116,8 @@ def test_a_machine_and_a_scene_hold_the_same_numbers(form):
 
 @pytest.mark.parametrize("text", ["60 deg", "60deg", "1.0471975511965976", "0.16666666666666666 turn"])
 def test_the_command_line_reads_the_same_numbers(text, capsys):
-    assert main(["point", "Y", f"theta={text}", "ec=10mm", "AB=40 mm", "BC=0.13", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)["Y"]["value"]
+    assert main(["evaluate", "Y", f"theta={text}", "ec=10mm", "AB=40 mm", "BC=0.13", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["Y"]
     assert found == dx.evaluate("Y", theta=text, ec=0.01, **SIZES)
     assert found == pytest.approx(position(math.pi / 3, 0.01), rel=1e-14)
 
@@ -158,9 +158,9 @@ def test_the_command_line_reads_plain_numbers_of_a_fit_in_the_units_of_the_scene
     measured = 1e3 * (position(np.radians(angles), 0.01) + shifts)
     rows = [f"{angle},{value}" for angle, value in zip(angles, measured, strict=True)]
     data.write_text("\n".join([heads, *rows]))
-    assert main(["fit", str(scene), str(data), "--sigma", "Y=0.05", "--over", "AB=35:50", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)  # in SI units
-    assert found["value"]["AB"] == pytest.approx(0.04, rel=1e-3)
+    assert main(["fit", str(data), "--machine", str(scene), "sigma.Y=0.05", "over.AB=35:50", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["value"]["AB"] == pytest.approx(40.0, rel=1e-3)
     assert found["chi_square"] == pytest.approx(angles.size / (angles.size - 1), rel=1e-2)
 
 
@@ -221,10 +221,10 @@ def by_command(name, value, **others):
         said = {stream: io.StringIO() for stream in ("stdout", "stderr")}
         for stream, buffer in said.items():
             patch.setattr(sys, stream, buffer)
-        code = main(["point", echo(name), *words, "--json"])
+        code = main(["evaluate", echo(name), *words, "--json"])
     if code:
         raise ValueError(said["stderr"].getvalue())
-    return json.loads(said["stdout"].getvalue())["echo"]["value"]
+    return json.loads(said["stdout"].getvalue())["echo"]
 
 
 READERS = {
@@ -421,7 +421,7 @@ def test_a_function_warns_once_of_each_kind():
 )
 def test_the_first_call_of_an_engineer_needs_no_unit_library(words, slip):
     code = "import sys; from desaxe.cli import main; main(); print({'pint', 'numpy'} & {*sys.modules})"
-    command = [sys.executable, "-c", code, "point", "a_C", *words]
+    command = [sys.executable, "-c", code, "evaluate", "a_C", *words]
     found = subprocess.run(command, capture_output=True, text=True, check=True)
     assert (slip in found.stderr, bool(found.stderr)) == (True, bool(slip)), found.stderr
-    assert re.match("a_C = .*\nset\\(\\)$", found.stdout)
+    assert re.match("a_C  .*\nstatus  0\nset\\(\\)$", found.stdout)

@@ -3,12 +3,10 @@
 command  the sub-commands, and how errors reach the terminal
 parser   a parser with one-line errors, help, the sign convention
 words    names and inputs as command-line arguments
-point    `desaxe point`
-calls    `desaxe peak`, `drive`, `simulate` and every other call, by one table
+calls    `desaxe evaluate`, `peak`, `fit` and every other call, by one table
 answers  the answer of a call on the terminal, as JSON or CSV, in a file
 scene    `desaxe run`, `scene`, `explain`, `compile`, `explore`
 sweep    `desaxe sweep`
-fit      `desaxe fit`
 checks   `desaxe derive`, `doctor`
 cache    `desaxe cache`: the folder of compiled kernels
 doctor   the report of `desaxe doctor`

@@ -4,14 +4,16 @@ import argparse
 import csv
 import io
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ..support.shown import printable
 from .words import UsageError
 
 TEXTS = (".json", ".csv")
 DATASETS = (".csv", ".nc", ".npz", ".xlsx", ".zarr")
+PICTURES = (".png", ".svg", ".pdf")
 
 
 def require_target(path: Path, overwrite: bool) -> None:
@@ -19,36 +21,50 @@ def require_target(path: Path, overwrite: bool) -> None:
     from ..scenes.stores.files import check_place
     from ..support.files import require_writable
 
-    if path.suffix not in (*TEXTS, *DATASETS):
-        raise UsageError(f"-o {path}: its name must end in {', '.join(dict.fromkeys((*TEXTS, *DATASETS)))}")
+    if path.suffix not in (*TEXTS, *DATASETS, *PICTURES):
+        allowed = ", ".join(dict.fromkeys((*TEXTS, *DATASETS, *PICTURES)))
+        raise UsageError(f"-o {printable(path)}: its name must end in {allowed}")
     check_place(path, overwrite)
     require_writable(path)
 
 
 def written(answer: Any, options: argparse.Namespace) -> None:
-    """Print an answer as the options say, and write it to the file that they name."""
-    is_dataset = hasattr(answer, "data_vars")
+    """Print an answer as the options say, or write it to the file that they name."""
     if options.json:
         print(json_text(answer))
     elif options.csv:
         print(csv_text(answer), end="")
     elif options.file is None:
-        print(answer.report() if hasattr(answer, "report") else repr(answer))
-    if options.file is None:
-        return
-    path = Path(options.file)
-    if is_dataset and path.suffix in DATASETS:
+        from ..support.answer import Answer
+
+        plain_dict = type(answer) is dict
+        print(answer.report() if hasattr(answer, "report") else Answer(answer) if plain_dict else answer)
+    if options.file is not None:
+        path = Path(options.file)
+        _write(answer, path, options.overwrite)
+        print(f"{printable(path)}: written")
+
+
+def _write(answer: Any, path: Path, overwrite: bool) -> None:
+    if path.suffix in PICTURES:
+        if not hasattr(answer, "plot") or hasattr(answer, "data_vars"):
+            raise UsageError(f"-o {printable(path)}: this answer has no picture; name a .json or .csv file")
+        answer.plot().save(path, overwrite=overwrite)
+    elif hasattr(answer, "data_vars") and path.suffix in DATASETS:
         from ..scenes.stores.files import write
 
-        write(path, answer, {}, options.overwrite)
+        write(path, answer, {}, overwrite)
+    elif path.suffix == ".xlsx":
+        from ..scenes.stores.workbook import to_excel
+
+        to_excel(answer, path, overwrite=overwrite)
     elif path.suffix in TEXTS:
         from ..support.written import write_whole
 
-        with write_whole(path, options.overwrite) as staged:
+        with write_whole(path, overwrite) as staged:
             staged.write_text(_file_text(answer, path.suffix), encoding="utf-8", newline="\n")
     else:
-        raise UsageError(f"-o {path}: this answer is no table of arrays; name a .json or .csv file")
-    print(f"{path}: written")
+        raise UsageError(f"-o {printable(path)}: this answer is no Dataset; name a .json or .csv file")
 
 
 def _file_text(answer: Any, suffix: str) -> str:
@@ -78,7 +94,7 @@ def plain(value: Any) -> Any:
     if hasattr(value, "_asdict"):
         value = value._asdict()
     if isinstance(value, Mapping):
-        return {_key(key): plain(part) for key, part in value.items()}
+        return {" ".join(map(str, k)) if isinstance(k, tuple) else str(k): plain(v) for k, v in value.items()}
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, (list, tuple)):
@@ -90,52 +106,12 @@ def plain(value: Any) -> Any:
     return str(value)
 
 
-def _key(key: Any) -> str:
-    return " ".join(map(str, key)) if isinstance(key, tuple) else str(key)
-
-
 def csv_text(answer: Any) -> str:
-    """A table: columns of arrays of one length, or a row for each number."""
+    """A table: a column for each array, or a row for each number."""
+    from ..scenes.stores.tables import table_of, tables_of
+
+    is_dataset = hasattr(answer, "data_vars")
+    rows = table_of(answer) if is_dataset else next(iter(tables_of(answer, answer.units).values()))
     text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(_rows(answer))
+    csv.writer(text, lineterminator="\n").writerows(rows)
     return text.getvalue()
-
-
-def _rows(answer: Any) -> Iterator[list[Any]]:
-    if hasattr(answer, "data_vars"):
-        from ..scenes.stores.tables import table_of
-
-        yield from table_of(answer)
-        return
-    units = plain(answer.units)
-    columns = {name: part for name, part in answer.items() if getattr(part, "ndim", 0) == 1 and part.size > 1}
-    longest = max((part.size for part in columns.values()), default=0)
-    columns = {name: part.tolist() for name, part in columns.items() if part.size == longest}
-    if columns:
-        yield [_heading(name, units.get(name, "")) for name in columns]
-        yield from map(list, zip(*columns.values(), strict=True))
-        return
-    yield ["name", "value", "unit"]
-    yield from _flat("", plain(answer), units)
-
-
-def _flat(prefix: str, value: Any, unit: Any) -> Iterator[list[Any]]:
-    """A row for each number of nested tables and lists."""
-    if isinstance(value, dict):
-        for key, part in value.items():
-            yield from _flat(f"{prefix}.{key}" if prefix else key, part, _under(unit, key))
-    elif isinstance(value, list):
-        for index, part in enumerate(value):
-            yield from _flat(f"{prefix}[{index}]", part, unit)
-    else:
-        yield [prefix, value, unit if isinstance(unit, str) else ""]
-
-
-def _under(unit: Any, key: str) -> Any:
-    return unit.get(key, "") if isinstance(unit, dict) else unit
-
-
-def _heading(name: str, unit: Any) -> str:
-    from ..scenes.stores.tables import heading
-
-    return heading(name, unit if isinstance(unit, str) else "")

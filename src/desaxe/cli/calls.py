@@ -6,11 +6,15 @@ A call of this table is a method of `Machine` of the same name. To add one, add 
 import argparse
 import re
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from ..mechanism.inputs import INPUTS
+from ..mechanism.names import LOADS
+from ..support.template import file_text, filled
 from .answers import require_target, written
-from .parser import add_command
+from .parser import SIGNS, add_command
 from .words import UsageError, arguments_of
 
 # Call -> what it answers, in a line of `desaxe --help`, and the words of an example.
@@ -48,62 +52,94 @@ CALLS = {
         "steady motion on a motor: the [steady] torque of a scene, or a number",
         "--machine examples/motor.toml flywheel_inertia=3",
     ),
+    "fit": (
+        "parameters of a machine from measurements in a CSV file",
+        "examples/measured.csv over=AB,BC sigma.Y=0.05mm --machine examples/motor.toml",
+    ),
 }
 MISSING = re.compile(r"(\w+)\(\) missing \d+ required keyword-only arguments?: (.*)")
 PLUS_MINUS = "dx.plus_minus(value, tolerance)"
 SCENE = ", the torque also by [steady] of a scene"
-HELP = """\
-NAME=VALUE: an input, as `desaxe point --help` lists them, or an option of the call. VALUE is a
-number (SI units and radians, or those of --units or of the scene), a number with its unit,
-FIRST:LAST:COUNT, a list with commas, or LOW:HIGH; NAME.KEY=VALUE is an entry of a table.
-
-options: {options}
-
-example:
-  desaxe {name} {example}
-"""
 
 
 def add_calls(commands: Any) -> None:
     """Add a command for each call of the table."""
     for name, (meaning, example) in CALLS.items():
-        text = partial(_help, name, example)
-        parser = add_command(commands, name, meaning, _call, text=text)
+        parser = add_command(commands, name, meaning, _call, text=partial(_help, name, example))
         parser.set_defaults(call=name)
         parser.add_argument("words", nargs="*", metavar="QUANTITY | NAME=VALUE", help="quantities and inputs")
         parser.add_argument("--machine", metavar="SCENE", help="path of a TOML file with all other inputs")
         parser.add_argument("--units", help='units of plain numbers and of the answer: "mm, deg, rpm"')
         parser.add_argument("--json", action="store_true", help="print JSON")
         parser.add_argument("--csv", action="store_true", help="print a table as CSV")
-        parser.add_argument("-o", metavar="FILE", dest="file", help=".json, .csv, .nc, .zarr, .xlsx or .npz")
+        what = ".json, .csv, .nc, .zarr, .xlsx, .npz, or a picture: .png, .svg, .pdf"
+        parser.add_argument("-o", metavar="FILE", dest="file", help=what)
         parser.add_argument(
             "--overwrite", action="store_true", help="replace a file that desaxe did not write"
         )
+        if name == "evaluate":
+            parser.add_argument("--list", action="store_true", help="print all quantities, units, meanings")
 
 
 def _help(name: str, example: str) -> str:
     """The longer help of a call, with the names of its options."""
     from inspect import Parameter, signature
 
-    from ..machine.methods import import_function
-    from ..mechanism.inputs import INPUTS
-
-    every = signature(import_function(name)).parameters.values()
+    every = signature(_function(name)).parameters.values()
     options = [p.name for p in every if p.kind is Parameter.KEYWORD_ONLY and p.name not in INPUTS]
-    return HELP.format(name=name, example=example, options=", ".join(options) or "none")
+    loads = [f"{load:8} {INPUTS[load].meaning}" for load in LOADS]
+    facts = {"OPTIONS": ", ".join(options) or "none", "LOADS": loads, "SIGNS": SIGNS}
+    return filled(file_text(__package__, "help", "call.txt"), **facts, EXAMPLE=f"desaxe {name} {example}")
+
+
+def _function(name: str) -> Any:
+    """The public function of a call."""
+    return getattr(import_module("desaxe"), name)
 
 
 def _call(options: argparse.Namespace) -> int:
+    if vars(options).get("list"):
+        return _list()
     if options.file is not None:
         require_target(Path(options.file), options.overwrite)
     names, arguments = arguments_of(options.words)
-    machine, arguments = _machine(options, arguments)
     quantities = _quantities(options.call, names)
+    machine, arguments = _machine(options, arguments)
     try:
-        answer = getattr(machine, options.call)(*quantities, **arguments)
+        answer = _answer(options.call, machine, quantities, arguments)
     except (TypeError, ValueError) as error:
         raise UsageError(_as_words(str(error))) from error
     written(answer, options)
+    return 0
+
+
+def _answer(call: str, machine: Any, quantities: list[Any], arguments: dict[str, Any]) -> Any:
+    """The answer; of `evaluate` with the status, where the inputs are enough to know it."""
+    if call != "evaluate" or "quality" in arguments:
+        return getattr(machine, call)(*quantities, **arguments)
+    from ..loads.absent import warn_that_nothing_acts
+
+    (names,) = quantities
+    given = {**arguments, **(machine if hasattr(machine, "in_units") else {})}
+    try:
+        answer = machine.evaluate(list(dict.fromkeys([*names, "status"])), **arguments)
+    except TypeError:
+        answer = machine.evaluate(names, **arguments)
+    warn_that_nothing_acts(names, given)
+    return answer
+
+
+def _list() -> int:
+    """Print all quantities with their units and meanings."""
+    from ..mechanism.catalogue import quantities
+    from ..support.shown import printed
+    from ..support.text_table import table
+
+    rows = [
+        (row.name, printed(row.unit) or "1", f"{row.meaning} ({row.source})" if row.source else row.meaning)
+        for row in quantities().values()
+    ]
+    print("\n".join(table(rows)))
     return 0
 
 
@@ -120,10 +156,14 @@ def _as_words(message: str) -> str:
 
 
 def _machine(options: argparse.Namespace, arguments: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
-    """The machine with the single inputs among the arguments, of which a call takes those that it needs."""
+    """The machine with the single inputs among the arguments, of which a call takes those that it needs.
+
+    Values at a point in SI units need none, and no NumPy: they come from the function itself.
+    """
+    if options.call == "evaluate" and options.machine is None and options.units is None:
+        return import_module("desaxe"), arguments
     from ..machine.machine import Machine
     from ..machine.methods import NOT_FILLED, OF_RANGES
-    from ..mechanism.inputs import INPUTS
     from ..mechanism.ranges import between
 
     if options.machine is None:
@@ -142,23 +182,22 @@ def _machine(options: argparse.Namespace, arguments: dict[str, Any]) -> tuple[An
 
 
 def _quantities(call: str, names: list[str]) -> list[Any]:
-    """The positional arguments of a call: its names, its one name, or none."""
-    expected = _positional(call)
-    if names and not expected:
-        raise UsageError(f"{names[0]}: desaxe {call} takes no quantity, only NAME=VALUE")
-    if expected == "name" and len(names) != 1:
-        raise UsageError(f"desaxe {call} takes one quantity, got {len(names)}")
-    return [names[0] if expected == "name" else names] if names else []
-
-
-def _positional(call: str) -> str:
-    """`names` or `name`: what a call takes without a keyword; empty for nothing."""
+    """The positional arguments of a call: its names, its one name, its file, or none."""
     from inspect import Parameter, signature
 
-    from ..machine.methods import import_function
-
-    first = next(iter(signature(import_function(call)).parameters.values()))
-    return first.name if first.kind is Parameter.POSITIONAL_OR_KEYWORD else ""
+    first = next(iter(signature(_function(call)).parameters.values()))
+    if first.kind is not Parameter.POSITIONAL_OR_KEYWORD:
+        if names:
+            raise UsageError(f"{names[0]}: desaxe {call} takes no quantity, only NAME=VALUE")
+        return []
+    what = "quantity" if first.name.startswith("name") else first.name
+    if not names and first.default is Parameter.empty:
+        raise UsageError(
+            f"which {what}? desaxe {call} --help has an example, desaxe evaluate --list all quantities"
+        )
+    if first.name != "names" and len(names) != 1:
+        raise UsageError(f"desaxe {call} takes one {what}, got {len(names)}")
+    return [names if first.name == "names" else names[0]] if names else []
 
 
 def _motor(options: argparse.Namespace) -> dict[str, Any]:

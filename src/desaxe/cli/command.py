@@ -20,9 +20,7 @@ from ..support.shown import printable
 from .cache import add_cache
 from .calls import CALLS, add_calls
 from .checks import add_derive, add_doctor, derive
-from .fit import add_fit
 from .parser import SIGNS, Parser, Version
-from .point import add_point
 from .scene import add_compile, add_explain, add_explore, add_run, add_scene
 from .sweep import add_sweep
 from .words import UsageError, options_first
@@ -36,7 +34,6 @@ class Terminated(KeyboardInterrupt):
 
 
 COMMANDS = (
-    add_point,
     add_calls,
     add_scene,
     add_run,
@@ -44,7 +41,6 @@ COMMANDS = (
     add_explain,
     add_compile,
     add_explore,
-    add_fit,
     add_derive,
     add_cache,
     add_doctor,
@@ -108,7 +104,7 @@ def _leave(code: int) -> int:
 def _run(words: list[str]) -> int:
     if words[:1] == ["derive"]:  # its options are its own
         return derive(words[1:])
-    if words and (words[0] == "point" or words[0] in CALLS):
+    if words and words[0] in CALLS:
         words = [words[0], *options_first(words[1:])]
     parser = _parser()
     options = parser.parse_args(words)

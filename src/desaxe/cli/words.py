@@ -23,25 +23,6 @@ def options_first(words: Sequence[str]) -> list[str]:
     return [*options, *others]
 
 
-def names_and_inputs(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
-    """Split arguments into names and inputs of a point; an argument with = is an input."""
-    from ..mechanism.inputs import INPUTS
-
-    names, pairs = _parted(words)
-    inputs: dict[str, Any] = {}
-    for key, value in pairs.items():
-        word = f"{key}={value}"
-        if key == "branch":
-            inputs[key] = _branch(value)
-        elif key not in INPUTS:
-            raise UsageError(f"{word}: no input is called {key!r}, {_inputs_near(key)}")
-        else:
-            inputs[key] = _quantity(word, value)
-    if not names:
-        raise UsageError("which quantity? give a name such as a_C (desaxe point --list shows all)")
-    return names, inputs
-
-
 def arguments_of(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
     """Split arguments into names and arguments of a call; `over.ec=LOW:HIGH` is an entry of `over`."""
     names, pairs = _parted(words)
@@ -79,7 +60,13 @@ def _parted(words: Sequence[str]) -> tuple[list[str], dict[str, str]]:
 def _value(word: str, text: str) -> Any:
     """A number, a text, a list with commas, a pair LOW:HIGH, or the numbers of FIRST:LAST:COUNT."""
     if "," in text:
-        return [_value(word, part) for part in text.split(",") if part]
+        values = [_value(word, part) for part in text.split(",") if part]
+        if isinstance(values[-1], str) and isinstance(values[0], (int, float)) and text[-1:].isalpha():
+            raise UsageError(
+                f"{word}: it must be a number, or a number with a unit: 1.5 has a point, and in a list of "
+                "numbers each has its unit"
+            )
+        return values
     parts = text.split(":")
     if len(parts) == 3:
         return _range(word, *parts)
@@ -139,16 +126,6 @@ def _range(word: str, first: str, last: str, count: str) -> list[Any]:
     return [f"{value!r} {unit}" if unit else value for value in values]
 
 
-def _inputs_near(word: str) -> str:
-    """The inputs most similar to a wrong name, all of them if none is."""
-    from ..mechanism.inputs import INPUTS
-    from ..mechanism.keywords import NEAREST
-    from ..mechanism.spelling import did_you_mean
-
-    allowed = *INPUTS, "branch"
-    return did_you_mean(word, allowed, NEAREST).strip() or f"there are {', '.join(allowed)}"
-
-
 def _refuse_parted(before: str, word: str) -> None:
     """UsageError if the shell split `ec=10 mm` in two: the second argument is then a unit."""
     from ..mechanism.catalogue import quantities
@@ -167,18 +144,3 @@ def _refuse_parted(before: str, word: str) -> None:
     raise UsageError(
         f'{before} {word}: a value and its unit are one word, {before}{word} or "{before} {word}"'
     )
-
-
-def _quantity(word: str, text: str) -> str:
-    from ..units.text import quantity_text
-
-    try:
-        return quantity_text(text)
-    except ValueError as error:
-        raise UsageError(f"{word}: {error}") from None
-
-
-def _branch(text: str) -> int:
-    if text not in ("1", "+1", "-1"):
-        raise UsageError(f"branch={text}: it is 1 or -1")
-    return int(text)

@@ -10,7 +10,6 @@ tornado    the changes and title of the tornado of a machine
 scenes     a machine from a scene, and a scene from a machine
 report     the page with everything about a machine
 tornado    the tornado of a machine
-excel      `to_excel`: datasets and dicts of answers as workbooks
 load_tables  loads that vary with the motion in such a scene
 summary    how a machine shows itself: drawing, lengths, speed, masses, loads, stroke
 """

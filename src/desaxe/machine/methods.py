@@ -151,6 +151,8 @@ def call(
         for key in INPUTS.keys() & inputs.keys():
             refuse_bare_pair(key, inputs[key])
     named = {**dict(zip(positional, args, strict=False)), **inputs}
+    if name == "fit" and "over" in named:
+        named["over"] = _starts(machine, named["over"])
     warn_of_slips(named, system, 4, {"alpha": machine.get("alpha")})
     with errors_in(system):
         given = {key: in_si(system, key, value) for key, value in named.items()}
@@ -180,12 +182,19 @@ def filled(machine: Mapping[str, Any], name: str, takes: Takes, given: Mapping[s
     found = {
         key: value
         for key, value in machine.items()
-        if key not in left and (takes.anything or key in takes.names or _starts(name, value))
+        if key not in left and (takes.anything or key in takes.names or _is_initial_speed(name, value))
     }
     return found | _wishes(machine, given) if name == "synthesize" else found
 
 
-def _starts(name: str, value: Any) -> bool:
+def _starts(machine: Any, over: Any) -> Any:
+    """The unknowns of a fit; one that is only named starts at the machine's number."""
+    names = [over] if isinstance(over, str) else over
+    pairs = names if isinstance(names, Mapping) else dict.fromkeys(names)
+    return {key: machine.in_units().get(key) if start is None else start for key, start in pairs.items()}
+
+
+def _is_initial_speed(name: str, value: Any) -> bool:
     """True for a speed of a machine where a motion starts: `simulate` has another name for it."""
     return name == "simulate" and isinstance(value, MachineSpeed)
 

@@ -94,7 +94,7 @@ def text_of(value: Any, unit: Any = "") -> str:
     """A value in one line, with its unit, or with the units of its parts."""
     if isinstance(value, Mapping):
         return _mapping(value, [_unit_of(unit, name) for name in value])
-    if hasattr(value, "_fields") and isinstance(unit, Mapping):
+    if hasattr(value, "_fields"):
         return _mapping(value._asdict(), [_unit_of(unit, name) for name in value._fields])
     if isinstance(value, (list, tuple)):
         left, right = "[]" if isinstance(value, list) else "()"

@@ -46,7 +46,8 @@ def fit(
     data      mapping of `theta` [rad] or `t` [s] and of measured quantities (`Y`, `a_C`, `T_in`, ...) to
               samples, NaN where one is missing; or a DataFrame, a Dataset, or the path of a CSV file whose
               heading names them: `theta [deg], a_C [m/s2]`
-    over      dict parameter -> start, or (low, high): bounds, in which several starts are tried
+    over      dict parameter -> start, or (low, high): bounds, in which several starts are tried; of a machine
+              also names alone, which start at its numbers
     sigma     dict quantity -> standard deviation of its samples, in the quantity's unit. Without it one
               quantity only may be measured, and the scatter of its residuals takes sigma's place
     nuisance  further unknowns: "theta_offset" [rad] (the crank is at theta + theta_offset), and of each

@@ -2,11 +2,18 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import isfinite, isnan, prod
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ...evaluation.in_units import Shown, in_units
+from ...mechanism.quantity_units import SI, UnitSystem, units_by_name
+from ...support.answer import Answer
 from ...support.extras import needed
-from .tables import table_of
+from ...support.files import as_path
+from ...support.shown import printable, shown
+from ...support.written import write_whole
+from .tables import table_of, tables_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,6 +25,63 @@ FORBIDDEN = str.maketrans(dict.fromkeys("[]:*?/\\'", "_"))
 OPTIONS = {"constant_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
 
 Sheet = Iterable[Sequence[Any]]  # its headings, then its rows
+
+
+def to_excel(
+    data: Any,
+    path: str | PathLike[str],
+    *,
+    units: str | Mapping[str, str] | UnitSystem | None = None,
+    overwrite: bool = False,
+) -> Path:
+    """Write a result as an Excel workbook; returns its path (extra `excel`).
+
+    data   a Dataset, as `grid`, `sweep`, `design_map` and scenes give it: a row for each point, a column for
+           each dimension and name, and a sheet with the inputs and where it comes from. Or a dict, as
+           `evaluate`, `peak`, `drive` and the others give it: arrays are columns, numbers have a row each
+    path   the file, .xlsx
+    units  such as "mm, deg, rpm": those that an answer in SI units is written in, or that the numbers of a
+           plain dict are in; SI units without
+
+    Numbers have 16 digits; NaN is an empty cell, an infinite number the text inf. The file appears whole or
+    not at all. Raises FileExistsError for one that desaxe did not write, unless `overwrite`; ValueError for
+    more points than a sheet has rows.
+    """
+    place = as_path("path", path)
+    if place.suffix.lower() != ".xlsx":
+        raise ValueError(f"{printable(path)}: a workbook is written as .xlsx")
+    sheets = _sheets_of_result(data, units)
+    with write_whole(place, overwrite) as staged:
+        write_workbook(staged, sheets)
+    return place
+
+
+def _sheets_of_result(data: Any, units: Any) -> Mapping[str, Sheet]:
+    if hasattr(data, "data_vars"):
+        return sheets_of(data, {})
+    if hasattr(data, "to_dataset") and hasattr(data, "dims"):
+        return sheets_of(data.to_dataset(name=data.name or "value"), {})
+    if not isinstance(data, Mapping):
+        raise TypeError(f"to_excel: expected a Dataset or a dict of answers, got {shown(data)}")
+    answer = data if isinstance(data, Answer) else Answer(data, _units_by_name)
+    system = answer.system or SI
+    if units is not None and not answer.system:
+        system = UnitSystem.read(units)
+        answer = (
+            in_units(answer, system) if answer is data else Answer(data, Shown(system).texts(answer.units))
+        )
+    inputs = {n: v if callable(v) else system.of(n).shown(v) for n, v in answer.inputs.items()}  # in SI units
+    tables = tables_of({**inputs, **answer}, {**{n: system.of(n).unit for n in inputs}, **answer.units})
+    for name, rows in tables.items():
+        require_room(name, len(rows) - 1)
+    return tables
+
+
+def _units_by_name(mapping: Mapping[Any, Any]) -> dict[Any, Any]:
+    """The units of a plain dict, also of dicts inside, by names that say what they are."""
+    units = units_by_name({key: value for key, value in mapping.items() if not isinstance(value, Mapping)})
+    inside = {key: part for key, part in mapping.items() if isinstance(part, Mapping) and key != "gradient"}
+    return {**units, **{key: _units_by_name(part) for key, part in inside.items()}}
 
 
 def write_workbook(path: Path, sheets: Mapping[str, Sheet]) -> None:
