@@ -20,11 +20,8 @@ PANELS = {
     "respond": ("0.1, rows", {"mul", "add"}),
 }
 PIECES = {
-    "combined": ("row, rows, other", {"mul", "add"}),
-    "ordered": ("row, other, 0.1, True, rows[0], rows[1]", {"add"}),
     "add_factors": ("0.5, 0.1, 1.0, row, other, rows[0], rows[1], rows[2], rows[3]", {"div", "sqrt", "mul"}),
     "add_lanes_of": ("row, other, rows[0], rows[1], 0.1, rows[2]", {"mul", "add"}),
-    "rates": ("int64(0), 0.5, row, rows[0], rows[1], other", {"div", "sqrt"}),
 }
 FAMILY = DesignFamily(Variant(True, ("r_crank", "r_rod")), ())
 
@@ -55,17 +52,13 @@ def test_panels_in_time(name, monkeypatch):
     assert wanted <= vectors_of(text, monkeypatch)
 
 
-def test_quantities_at_nodes(monkeypatch):
-    assert vectors_of(energy.quantities(FAMILY, False).text, monkeypatch) >= {"div", "sqrt", "mul", "fmuladd"}
-
-
 @pytest.mark.parametrize("name", PIECES)
 def test_pieces_in_energy_form(name, monkeypatch):
     given, wanted = PIECES[name]
     assert wanted <= vectors_of(text_of(name, given, [], energy.FILES, ""), monkeypatch)
 
 
-@pytest.mark.parametrize("name", ["kernel", "variations"])
+@pytest.mark.parametrize("name", ["variations"])
 def test_the_energy_form_is_compiled_once_on_a_machine(name, monkeypatch):
     texts = []
     monkeypatch.setattr(energy, "native", lambda *text: texts.append(text) or native(*text))

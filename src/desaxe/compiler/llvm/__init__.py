@@ -5,5 +5,8 @@ nest           a Kernel as a module: the entry, its loops, its two forms
 two_forms      loops over blocks of points of which each takes one of two forms
 functions.ll   what they call
 tables         tables.ll, the look-ups, at one point and at those of a vector
+loops          Python's own loops over arrays, compiled
+statements     their statements
+expressions    their expressions
 machine        text to machine code, which the caller keeps alive
 """

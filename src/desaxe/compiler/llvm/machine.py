@@ -17,7 +17,7 @@ from typing import Any
 
 from ...support.forks import IMPORTS, ForkSafeLock
 
-MATHEMATICS = ("atan2", "cos", "exp", "floor", "fma", "log", "pow", "sin")
+MATHEMATICS = ("asin", "atan2", "cos", "exp", "floor", "fma", "log", "nextafter", "pow", "sin")
 MEMORY = ("memmove", "memset")
 
 
@@ -80,16 +80,17 @@ _UNUSED: deque[Any] = deque()
 _NUMBERS = count()
 
 
-def compiled(text: str, name: str) -> Code:
+def compiled(text: str, name: str, optimised: bool = False) -> Code:
     """The function of this name of a text, as machine code for this processor."""
     with LOCK:
-        return _linked(emitted(text), name)
+        return _linked(emitted(text, optimised=optimised), name)
 
 
-def emitted(text: str, target: Any = None) -> bytes:
+def emitted(text: str, target: Any = None, optimised: bool = False) -> bytes:
     """The object file of a text, for a processor (see `target_machine`); this one without.
 
-    Texts have vectors and no value twice: LLVM's passes would find nothing, and take as long as all the rest.
+    Kernels have vectors and no value twice: there LLVM's passes would find nothing, and take as long as all
+    the rest.
     """
     llvm = _llvm()
     with LOCK:
@@ -97,8 +98,19 @@ def emitted(text: str, target: Any = None) -> bytes:
         module = llvm.parse_assembly(text, llvm.create_context())
         module.triple, module.data_layout = target.triple, str(target.target_data)
         module.verify()
+        if optimised:
+            _optimise(module, target)
         data: bytes = target.emit_object(module)
         return data
+
+
+def _optimise(module: Any, target: Any) -> None:
+    """Run LLVM's passes; short loops are not unrolled, which would come before the search for vectors."""
+    llvm = _llvm()
+    options = llvm.create_pipeline_tuning_options(speed_level=3)
+    options.loop_unrolling, options.slp_vectorization = False, False
+    builder = llvm.create_pass_builder(target, options)
+    builder.getModulePassManager().run(module, builder)
 
 
 @cache

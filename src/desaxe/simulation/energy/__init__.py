@@ -9,6 +9,7 @@ pushed     the derivatives of torque, load and limit angles of many designs by p
 by_parameters   those of their fields and starts, and the motions with them
 along      the derivatives of histories, ends and work
 many       many designs, as histories
+course     their speeds, accelerations and energies
 one_design  the context in which a motion of one design compiles nothing for its family
-loops          the energy form in plain loops whose text numba compiles
+loops          the energy form in plain loops, which are compiled
 """

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...support.panels import ENDS, NODES
-from .loops.compiled import TABLES, kernel, variations
+from .loops.compiled import TABLES, motions, variations
 from .panels import STARTS, Designs, Fields
 from .pushed import Pushed, arcs
 
@@ -171,7 +171,9 @@ def sensitivities_of(
         kept, where = np.empty((size, room, PIECE)), np.empty((size, 2, times.size))
         followed = kept, np.empty((size, times.size), np.int64), where
         panels = fields.edges[rows], fields.rough[rows], values[rows]
-        kernel()(*panels, setup[rows], times, how, most, *TABLES, *followed, x, speeds, status, bad, numbers)
+        lanes = np.empty((22, times.size)), np.empty((2, bad.shape[1], 17)), np.empty((2, bad.shape[1]))
+        to = x, speeds, status, bad, numbers
+        motions()(*panels, setup[rows], times, how, most, *TABLES, *lanes, *followed, *to)
         given = *panels, own.rows, own.jumps[rows], own.begin[rows], how, *TABLES, *followed
         variations()(*given, out[rows], ends[rows], status, bad, numbers)
         full = np.flatnonzero(status == FULL)

@@ -9,7 +9,8 @@ from ...support.panels import NODES
 from ..result import FAILED, LIMIT
 from .along import Histories, MotionAlong, histories_of
 from .by_parameters import Sensitivities, sensitivities_of
-from .loops.compiled import TABLES, courses, kernel
+from .course import accelerations, account
+from .loops.compiled import TABLES, motions
 from .panels import Designs, Fields, fields_of, first_edges, halved
 
 Array = NDArray[np.float64]
@@ -70,8 +71,8 @@ def follow_many(
         ways, known = np.where(omega == 0.0, way[:, None], omega * slope), places.known
         designs.add_tables(at[:, 1], theta, at[:, 3], known.get("Y_wrt_theta", theta), ways)
     omega[:, 0] = designs.omega_start
-    alpha, told = np.empty(x.shape), np.empty((len(x), 4))
-    courses()(theta, slope, at, designs.loads, numbers, omega, alpha, told)
+    alpha = accelerations(slope, at, omega)
+    told = account(theta, slope, at, designs.loads, numbers, omega, alpha)
     begin = 1 + np.flatnonzero(times == 0.0)  # there pieces have rounded the start
     theta[:, begin], omega[:, begin] = theta[:, :1], omega[:, :1]
     told[:, 0] = np.where(ended, np.minimum(numbers[:, 0], times[-1]), times[-1])
@@ -150,8 +151,14 @@ def _tried(
     room = pieces[None], np.empty((1, times.size), np.int64), np.empty((1, 2, times.size))
     panels, how = (fields.edges, fields.rough, fields.at.values), np.array([tolerance, 0.0])
     how[1] = 0.0 if kept is None else 3.0
-    kernel()(*panels, setup, times, how, most, *TABLES, *room, *outs)
+    motions()(*panels, setup, times, how, most, *TABLES, *buffers(times.size, bad), *room, *outs)
     return Marched(x, speeds, status, numbers, way), bad
+
+
+def buffers(instants: int, panels: NDArray[np.int8]) -> tuple[Array, Array, Array]:
+    """The buffers of `motions`."""
+    count = panels.shape[1]
+    return np.empty((22, instants)), np.empty((2, count, 17)), np.empty((2, count))
 
 
 def _ways(designs: Designs, fields: Fields, begin: NDArray[np.intp]) -> Array:

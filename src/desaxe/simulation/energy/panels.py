@@ -11,12 +11,9 @@ from ...evaluation.evaluate import evaluate
 from ...loads.angles import meeting_angles, turns_of, zero_of
 from ...loads.load import Load, OverTheta, OverY
 from ...mechanism.closed import TURN
-from ...mechanism.constants import constants
 from ...mechanism.names import LENGTHS
 from ...support.panels import NODE, NODES, nodes_of, padded
-from ..loops.compiled import DesignFamily
-from ..model import fixed_zeros, form_of
-from .loops.compiled import at_angles, names_of, quantities, rows_of
+from .loops.compiled import names_of
 from .one_design import is_one_design
 
 Array = NDArray[np.float64]
@@ -104,25 +101,6 @@ class Designs(NamedTuple):
         loaded = isinstance(self.force, Load)
         names = names_of(loaded, wrt)[edges is None]
         slope, values = np.empty(x.shape), np.empty((len(x), len(names) + more, x.shape[1]))
-        if is_one_design():
-            self._by_arrays(names, edges, x, slope, values)
-            return AtPlaces(names, values, slope)
-        number = 0.0 if isinstance(self.torque, Load) else self.torque
-        setup = np.empty((len(x), 4))
-        for column, own_values in enumerate((self.theta0, self.middle, self.half, number)):
-            setup[:, column] = own_values
-        family = DesignFamily(form_of(self.inputs), fixed_zeros(self.inputs))
-        own = quantities(family, loaded, wrt)
-        panels = np.empty((len(x), 0)) if edges is None else edges
-        rows = rows_of(own.inputs, self.inputs, len(x))
-        given = rows, setup, float(self.branch), constants().limit, NODE, panels
-        at_angles(own.text)(*given, x, slope, values)
-        return AtPlaces(names, values, slope)
-
-    def _by_arrays(
-        self, names: Sequence[str], edges: Array | None, x: Array, slope: Array, values: Array
-    ) -> None:
-        """Fill in the same by NumPy, for one design: nothing is compiled for a family of designs."""
         if edges is not None:
             x[:, 1:] = nodes_of(edges[:, :-1], edges[:, 1:]).reshape(len(x), -1)
         x[:, 1:], slope[:, 1:] = self.place(x[:, 1:])
@@ -134,6 +112,7 @@ class Designs(NamedTuple):
         if edges is not None:
             values[:, 0] *= slope * slope
             values[:, 1] *= slope
+        return AtPlaces(names, values, slope)
 
     def length(self, name: str) -> Array:
         """A length of each design."""

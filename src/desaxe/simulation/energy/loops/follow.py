@@ -311,6 +311,9 @@ def motions(
     running: Any,
     mean: Any,
     blocks: Any,
+    lanes: Any,
+    work: Any,
+    known: Any,
     kept: Any,
     which: Any,
     where: Any,
@@ -325,15 +328,10 @@ def motions(
     x, speed      their first column, of the start, is left alone
     kept, which   pieces, and those of the instants: of each design, or room for one
     where         u of the instants, and dt/du there
+    lanes, work, known   buffers: 22 rows of instants, 2 x panels x 17, 2 x panels
     """
-    tables, count, panels = (
-        (nodes, weights, coefficients, running, mean, blocks),
-        len(times),
-        edges.shape[1] - 1,
-    )
-    # Rows of two axes: each number of axes is a function more to compile.
-    lanes, work, known = empty((22, count)), empty((2, panels, 17)), empty((2, panels))
-    since, last = lanes[21], empty((1, 19))[0]
+    tables, count = (nodes, weights, coefficients, running, mean, blocks), len(times)
+    since, last = lanes[21], empty(19)
     for n in range(len(setup)):
         room = n if len(kept) == len(setup) else 0
         own, pieces = which[room], kept[room]

@@ -5,10 +5,10 @@ from __future__ import annotations
 from math import sqrt
 from typing import TYPE_CHECKING
 
+from ....compiler.llvm.loops import apart
+
 if TYPE_CHECKING:
     from typing import Any
-
-    from .pieces import apart
 
 CLOSE = 1e-7  # of u: the step of Newton's method after this one is rounding
 

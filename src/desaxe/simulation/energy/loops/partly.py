@@ -17,7 +17,7 @@ from .through import total_of
 if TYPE_CHECKING:
     from typing import Any
 
-    from .pieces import apart
+    from ....compiler.llvm.loops import apart
 
 
 SHORT, STEP = 3e-6, 1e-3  # of a panel: a short piece, and a step by which Q's slope is found

@@ -12,11 +12,10 @@ from __future__ import annotations
 from math import sqrt
 from typing import TYPE_CHECKING
 
+from ....compiler.llvm.loops import apart
+
 if TYPE_CHECKING:
     from typing import Any
-
-    def apart() -> None:
-        """The promise that what is written to shares no memory with anything else."""
 
 
 def combined(values: Any, columns: Any, out: Any) -> None:

@@ -22,7 +22,7 @@ from .turns import in_block, node_of
 if TYPE_CHECKING:
     from typing import Any
 
-    from .pieces import apart
+    from ....compiler.llvm.loops import apart
 
 
 def total_of(values: Any, weights: Any) -> float:

@@ -34,7 +34,7 @@ from .through import factors, prepare_panel, settle, through, through_turns
 if TYPE_CHECKING:
     from typing import Any
 
-    from .pieces import apart
+    from ....compiler.llvm.loops import apart
 
 COARSER = 3.0  # so much less exactly than inertia and torque their derivatives may be known
 BARELY = 1e-6  # of the largest speed: slower, an edge is only touched
