@@ -1,4 +1,4 @@
-"""Equations for the page of the derivation, from the files that derive them."""
+"""Equations for the page of the derivation, from the files that derive them; drawings on the site."""
 
 import io
 import re
@@ -102,6 +102,11 @@ def _latex(expression):
 
 
 def _math(text):
+    """LaTeX as a block of a page."""
+    return f"```math\n{text}\n```"
+
+
+def drawing_of(text):
     """LaTeX as a drawing, which needs neither a script nor a font, and its source to copy."""
     file = io.BytesIO()
     with matplotlib.rc_context({"mathtext.fontset": "cm", "svg.fonttype": "path"}):

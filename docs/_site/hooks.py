@@ -1,7 +1,7 @@
 """Hooks of MkDocs: generated parts of pages, and equations.
 
-A line `<!-- desaxe: WRITER ARGUMENTS -->` is replaced by the text that the function of that name returns: one
-of `formulas` (equations, lines of the Program), `loads` or `reference` (functions, scene files, quantities).
+A line `<!-- desaxe: WRITER -->` is replaced by the text that the function of `reference` of that name
+returns, a block of LaTeX by a drawing.
 Inline LaTeX in GitHub's notation, a code span between dollar signs, becomes MathML, which needs no script.
 Each notebook becomes a page.
 """
@@ -10,7 +10,6 @@ import re
 from html import unescape
 
 import formulas
-import loads
 import reference
 from latex2mathml.converter import convert
 from mkdocs.structure.files import File
@@ -20,7 +19,9 @@ import notebooks
 MARK = re.compile(r"^<!-- desaxe: (\w+) ?(.*?) -->$", re.M)
 PUBLIC = re.compile(r"^\| (`(desaxe[\w.]+)`) \|", re.M)
 MATHS = re.compile(r"\$<code>(.+?)</code>\$", re.S)
-WRITERS = {writer.__name__: writer for writer in (*formulas.WRITERS, *loads.WRITERS, *reference.WRITERS)}
+NOTEBOOK = re.compile(r"\(\.\./notebooks/(\w+)\.ipynb\)")
+BLOCK = re.compile(r"^```math\n(.+?)\n```$", re.S | re.M)
+WRITERS = {writer.__name__: writer for writer in reference.WRITERS}
 
 
 def on_config(config, **_):
@@ -38,8 +39,13 @@ def on_files(files, config, **_):
 
 
 def on_page_markdown(markdown, **_):
-    """Replace the marks of a page before it is converted to HTML; names in tables lead to their entries."""
+    """Replace the marks of a page before it is converted to HTML; names in tables lead to their entries.
+
+    Links to a notebook of the repository lead to its page.
+    """
+    markdown = NOTEBOOK.sub(r"(notebooks/\1.md)", markdown)
     markdown = PUBLIC.sub(lambda row: f"| [{row[1]}](#{row[2].replace('.', '').lower()}) |", markdown)
+    markdown = BLOCK.sub(lambda block: formulas.drawing_of(block[1]), markdown)
     return MARK.sub(lambda found: WRITERS[found[1]](*found[2].split()), markdown)
 
 

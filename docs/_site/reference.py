@@ -1,13 +1,16 @@
 """Functions, scene files, quantities and inputs, from their docstrings, types and tables.
 
-`python docs/_site/reference.py` writes the tables of WRITTEN into their pages, between `<!-- table: NAME -->`
-and `<!-- end -->`; a test holds them fresh. The others stand on the site alone.
+`python docs/_site/reference.py` writes what WRITTEN makes into the pages, between `<!-- table: NAME ... -->`
+and `<!-- end -->`; a test holds them fresh. The docstrings stand on the site alone.
 """
 
 import inspect
 import re
 from html import escape
 from pathlib import Path
+
+import formulas
+import loads
 
 import desaxe as dx
 from desaxe.derive.equation import EquationText
@@ -167,14 +170,22 @@ def inputs():
     return "\n".join(["| name | unit | meaning | limit |", "|---|---|---|---|", *rows])
 
 
-WRITERS = (api, returned, scene)
-WRITTEN = {writer.__name__: writer for writer in (summary, quantities, inputs, statuses)}
-TABLE = re.compile(r"(?<=^<!-- table: )(\w+)( -->\n).*?(?=^<!-- end -->$)", re.S | re.M)
+WRITERS = (api, returned)
+WRITTEN = {
+    writer.__name__: writer
+    for writer in (summary, quantities, inputs, statuses, scene, *loads.WRITERS, *formulas.WRITERS)
+}
+TABLE = re.compile(r"(?<=^<!-- table: )(\w+)( [\w ]+)?( -->\n).*?(?=^<!-- end -->$)", re.S | re.M)
 
 
 def with_tables(page):
     """The text of a page with its tables as they are now."""
-    return TABLE.sub(lambda mark: f"{mark[1]}{mark[2]}\n{WRITTEN[mark[1]]()}\n\n", page)
+
+    def fresh(mark):
+        arguments = mark[2] or ""
+        return f"{mark[1]}{arguments}{mark[3]}\n{WRITTEN[mark[1]](*arguments.split())}\n\n"
+
+    return TABLE.sub(fresh, page)
 
 
 if __name__ == "__main__":
