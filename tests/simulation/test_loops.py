@@ -6,24 +6,14 @@ import pytest
 
 from desaxe.compiler.builder import module_text
 from desaxe.compiler.languages.numba.module import numba_parts
-from desaxe.mechanism.program import Variant
 from desaxe.runtime.native import compiled_text
 from desaxe.runtime.native.modules import native, path_of
 from desaxe.simulation.energy.loops import compiled as energy
-from desaxe.simulation.loops import compiled
-from desaxe.simulation.loops.compiled import DesignFamily
 
-PANELS = {
-    "still_at_nodes": ("0.1, 0.5, row, row, rows", {"div", "sqrt", "mul"}),
-    "integrate": ("0.0, 0.5, rows, int64(0), rows, int64(16), int64(17)", {"mul", "fmuladd"}),
-    "slowness": ("1.0, rows", {"div", "sqrt"}),
-    "respond": ("0.1, rows", {"mul", "add"}),
-}
 PIECES = {
     "add_factors": ("0.5, 0.1, 1.0, row, other, rows[0], rows[1], rows[2], rows[3]", {"div", "sqrt", "mul"}),
     "add_lanes_of": ("row, other, rows[0], rows[1], 0.1, rows[2]", {"mul", "add"}),
 }
-FAMILY = DesignFamily(Variant(True, ("r_crank", "r_rod")), ())
 
 
 def vectors_of(text, monkeypatch):
@@ -42,14 +32,6 @@ def text_of(name, given, parts, files, tail):
     row, rows = "types.float64[::1]", "types.float64[:, ::1]"
     signature = f"signature = types.void({row}, {row}, {rows})\nfunction = looped\n{tail}"
     return module_text("A test.", numba_parts([*parts, call, signature], *files))
-
-
-@pytest.mark.parametrize("name", PANELS)
-def test_panels_in_time(name, monkeypatch):
-    given, wanted = PANELS[name]
-    parts = [compiled.still_in_lanes(FAMILY)] if name == "still_at_nodes" else []
-    text = text_of(name, given, parts, compiled.FILES, "short_loops = True\n")
-    assert wanted <= vectors_of(text, monkeypatch)
 
 
 @pytest.mark.parametrize("name", PIECES)

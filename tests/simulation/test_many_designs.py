@@ -1,6 +1,5 @@
 """Many designs in one compiled call: the same motions as one at a time, whatever the threads."""
 
-import ast
 import math
 import re
 from pathlib import Path
@@ -8,13 +7,10 @@ from pathlib import Path
 import numba
 import numpy as np
 import pytest
-from scipy.integrate import DOP853
 
 import desaxe as dx
-from desaxe.mechanism.program import Variant
 from desaxe.simulation.coordinate import EDGE
-from desaxe.simulation.loops import motions, nodes, state
-from desaxe.simulation.loops.compiled import DesignFamily, source_of
+from desaxe.simulation.loops import state
 from tests.motions import true_end
 from tests.simulation.by_time import by_time
 from tests.simulation.test_simulate import CRANK, LOADED, PRESS, ROCKER
@@ -208,44 +204,6 @@ def test_friction_of_none_counts_as_designs():
     found = dx.simulate(**{"torque": 0.25, "t_end": 0.1, "times": [0.1], **PRESS, "mu": [0.0, 0.0]})
     assert found["theta"].shape == (2, 1)
     assert found["status"].shape == (2,)
-
-
-# ---- the compiled module -------------------------------------------------------------------------
-
-
-def test_the_text_stands_alone():
-    tree = ast.parse(source_of(DesignFamily(Variant(True, ("r_crank", "r_rod")), ()), False))
-    modules = {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
-    assert modules == {"__future__", "math", "numba", "numba.extending", "numpy", "typing"}
-    assert not [node for node in ast.walk(tree) if isinstance(node, ast.Import)]
-
-
-def test_what_a_family_lacks_costs_nothing():
-    """Without gravity nothing computes a weight."""
-    zeros = tuple((name, 0.0) for name in ("g_X", "g_Y"))
-    full, light = (source_of(DesignFamily(Variant(True), fixed), False) for fixed in ((), zeros))
-    assert "g_Y" in full
-    assert "g_Y" not in light
-
-
-def test_the_text_runs_uncompiled(monkeypatch):
-    """A crank of 1 kg m^2 alone: theta = torque t^2/2."""
-    crank = {"still": (1.0, 0.0, 0.0), "moving": (1.0, 0.0, 0.0, 0.0), "potential": 0.0}
-    for module in (state, motions):
-        for name, found in crank.items():
-            monkeypatch.setattr(module, name, lambda theta, branch, p, found=found: found, raising=False)
-        monkeypatch.setattr(module, "torque", lambda t, theta, omega, number: number, raising=False)
-    setup = np.array([[1.0, -math.inf, math.inf, 0.0, 3.0, 0.0, 0.5, 1.0, 0.0]])
-    times, how = np.array([0.0, 0.3, 2.0]), np.array([1e-10, 2.0, math.inf, 1000.0, 0.0])
-    tables = [getattr(DOP853, name) for name in ("A", "B", "C", "E3", "E5", "D", "A_EXTRA", "C_EXTRA")]
-    tables.append(nodes.table())
-    theta, omega, alpha = (np.empty((1, 3)) for _ in range(3))
-    status, numbers = np.full(1, -1, np.int8), np.empty((1, 5))
-    motions.designs(np.empty((1, 0)), setup, times, how, *tables, theta, omega, alpha, status, numbers)
-    np.testing.assert_allclose(theta[0], 0.5 + times + 1.5 * times**2, rtol=1e-13)
-    np.testing.assert_allclose(omega[0], 1.0 + 3.0 * times, rtol=1e-13)
-    assert (status[0], numbers[0, 0], alpha[0, 1]) == (0, 2.0, 3.0)
-    assert numbers[0, 2] == pytest.approx(3.0 * (theta[0, -1] - 0.5))
 
 
 def test_the_edge_is_the_same_in_both():

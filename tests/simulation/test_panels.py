@@ -7,7 +7,11 @@ import pytest
 
 import desaxe as dx
 from benchmarks.rows import cranks
-from desaxe.simulation.loops import dense, motions, nodes, panel, picard, state, tableau
+from desaxe.simulation.loops import dense, nodes, picard, tableau
+from desaxe.simulation.loops.compiled import DesignFamily, motions
+from desaxe.simulation.loops.motions import designs
+from desaxe.simulation.loops.torque import compiled
+from desaxe.simulation.model import form_of
 from tests.effort import cases
 from tests.motions import true_end
 from tests.simulation.by_time import by_time
@@ -97,35 +101,32 @@ def test_the_integrals_from_rest_are_exact_for_powers():
         np.testing.assert_allclose(energies, 2.0 / (power + 2) * s ** (power + 2), rtol=1e-10, atol=1e-16)
 
 
-def test_a_start_from_rest_takes_no_step_in_time(monkeypatch):
-    """A crank of 1 kg m^2 under 3 + t N m, in plain Python."""
-
-    def asked_at_nodes(number, room, first, count):
-        room[first + 3, :count] = number + room[first, :count]
-        return True
-
-    given = {
-        "still": lambda theta, branch, p: (1.0, 0.0, 0.0),
-        "moving": lambda theta, branch, p: (1.0, 0.0, 0.0, 0.0), "potential": lambda theta, branch, p: 0.0,
-        "torque": lambda t, theta, omega, number: number + t,
-        "apart": lambda: None, "mul_add": lambda a, b, c: a * b + c, "asked_at_nodes": asked_at_nodes,
-        "step": None,
-    }  # fmt: skip
-    for module in (motions, state, dense, panel, picard):
-        for name, value in {**given, "still_in_lanes": given["still"]}.items():
-            monkeypatch.setattr(module, name, value, raising=False)
-    setup = np.array([[1.0, -math.inf, math.inf, 0.0, 3.0, 0.0, 0.5, 0.0, 0.0]])
-    times, how = np.array([0.0, 1e-3, 0.3, 2.0]), np.array([1e-10, 2.0, math.inf, 1000.0, 1.0])
-    A, C, last = tableau.A, tableau.C, tableau.STAGES
-    tables = A, tableau.B, C, tableau.E3, tableau.E5, tableau.D, A[last + 1 :], C[last + 1 :], nodes.table()
-    histories, status, numbers = (
-        [np.empty((1, 4)) for _ in range(3)],
-        np.full(1, -1, np.int8),
-        np.empty((1, 5)),
+@pytest.mark.parametrize(("omega", "panels"), [(0.0, True), (1.0, False)])
+def test_machine_code_has_the_bits_of_plain_python(omega, panels, monkeypatch):
+    """A crank of 1 kg m^2 under 3 + t N m: from rest by panels alone, else by steps in time."""
+    family = DesignFamily(form_of({}), (("ec", 0.0),))
+    kernel, torque = family.kernel(), compiled(lambda t: 3.0 + t)
+    inputs = dict.fromkeys(kernel.scalars, 0.0) | {"AB": 0.1, "BC": 0.3, "I_crank": 1.0}
+    rows = family.rows(kernel, inputs, 1)
+    setup = np.array(
+        [[1.0, -math.inf, math.inf, 0.0, torque.address, 0.0, 0.5, omega, 0.0, kernel.code.address]]
     )
-    with np.errstate(all="ignore"):  # the change of the first torques is from whatever the room had
-        motions.designs(np.empty((1, 0)), setup, times, how, *tables, *histories, status, numbers)
+    times, how = np.array([0.0, 1e-3, 0.3, 2.0]), np.array([1e-10, 2.0, math.inf, 1000.0, float(panels)])
+    A, C, last = tableau.A, tableau.C, tableau.STAGES
+    tables = A[:last, :last].copy(), tableau.B, C[:last].copy(), tableau.E3, tableau.E5, tableau.D
+    tables = *tables, A[last + 1 :].copy(), C[last + 1 :].copy(), nodes.table()
+    answers = []
+    for run in (motions(), designs):
+        if run is designs and panels:
+            monkeypatch.setattr(dense, "step", None)
+        outs = [np.zeros((1, 4)) for _ in range(3)], np.full(1, -1, np.int8), np.empty((1, 5))
+        with np.errstate(all="ignore"):  # the change of the first torques is from whatever the room had
+            run(rows, setup, times, how, *tables, *outs[0], *outs[1:])
+        answers.append(outs)
+    (histories, status, numbers), (theirs, *_) = answers
     assert (status[0], numbers[0, 0]) == (0, 2.0)
-    np.testing.assert_allclose(histories[0][0], 0.5 + 1.5 * times**2 + times**3 / 6.0, rtol=1e-10)
-    np.testing.assert_allclose(histories[1][0], 3.0 * times + 0.5 * times**2, rtol=1e-9)
+    np.testing.assert_allclose(histories, theirs, rtol=1e-10 if panels else 0.0)  # fused products
+    right = 0.5 + omega * times + 1.5 * times**2 + times**3 / 6.0
+    np.testing.assert_allclose(histories[0][0], right, rtol=1e-10)
+    np.testing.assert_allclose(histories[1][0], omega + 3.0 * times + 0.5 * times**2, rtol=1e-9)
     np.testing.assert_allclose(histories[2][0], 3.0 + times, rtol=1e-12)

@@ -1,7 +1,6 @@
-"""A torque's function for many designs: compiled alone, sines written out, right however it is written."""
+"""A torque's function for many designs: right however it is written, as it is at each call."""
 
 import math
-from ctypes import CFUNCTYPE, c_int64
 from math import sin
 from types import ModuleType
 
@@ -10,39 +9,8 @@ import pytest
 from numba import njit
 
 import desaxe as dx
-from desaxe.runtime.native import compiled_text
-from desaxe.simulation.loops.torque import compiled
 
 CRANKS = {"AB": np.array([0.05, 0.06]), "BC": 0.2, "ec": 0.01, "m_slider": 1.0, "I_crank": 0.01}
-
-
-def values(function, t, theta, omega):
-    """A function's values by its machine code."""
-    rows = np.ascontiguousarray(np.stack([t, theta, omega, np.full(len(t), 7.0)]))
-    code = compiled(function)
-    call = CFUNCTYPE(c_int64, c_int64, c_int64, c_int64)(code.address)
-    assert call(rows.ctypes.data, rows.shape[1], rows.shape[1]) == 0
-    return rows[3]
-
-
-def cosine(theta):
-    """Takes numpy's."""
-    return np.cos(theta)
-
-
-def test_written_sines_at_any_angle():
-    rng = np.random.default_rng(1)
-    x = np.concatenate(
-        [rng.uniform(-10.0, 10.0, 400), rng.uniform(-1.0, 1.0, 400) * 10.0 ** rng.uniform(0, 18, 400)]
-    )
-    x = np.concatenate([x, np.arange(-40, 40) * (math.pi / 2), [0.0, -0.0, 2.0**45, 2.0**46, 1e300]])
-    found = values(lambda t, theta, omega: math.sin(t), x, x, x), values(cosine, x, x, x)
-    own_rounding = np.where(np.abs(x) < 50.0, 0.0, 2.0**-52 * np.abs(x))  # without fused products
-    for ours, theirs in zip(found, (np.sin(x), np.cos(x)), strict=True):
-        assert (np.abs(ours - theirs) <= 3e-16 + own_rounding).all()
-    bad = np.array([math.inf, math.nan, 1.0])
-    none = np.isnan(values(lambda t, theta, omega: math.sin(t), bad, bad, bad))
-    assert none.tolist() == [True, True, False]
 
 
 def by_name(t, theta, omega):
@@ -71,17 +39,6 @@ def test_every_way_to_write_a_sine(way):
     found = dx.simulate(torque=way, t_end=0.5, **CRANKS)
     np.testing.assert_allclose(found["theta"], plain["theta"], rtol=1e-9)
     assert (found["method"] == "panels").all()
-
-
-def test_a_new_function_is_compiled_alone(monkeypatch):
-    dx.simulate(torque=lambda t, theta, omega: 1.0 - 0.01 * omega, t_end=0.1, **CRANKS)
-    lengths, own = [], compiled_text.compile_text
-    monkeypatch.setattr(
-        compiled_text, "compile_text", lambda text, *a: lengths.append(len(text)) or own(text, *a)
-    )
-    dx.simulate(torque=lambda t, theta, omega: 1.1 - 0.01 * omega, t_end=0.1, **CRANKS)
-    assert len(lengths) == 1
-    assert lengths[0] < 4_000
 
 
 FACTOR, TABLE, FACTORS = 1.0, np.array([1.0, 2.0]), (1.0, 2.0)

@@ -31,7 +31,7 @@ from .energy.panels import Designs
 from .energy.serves import ENERGY, served, tables_alone
 from .history import PANELS
 from .loops import nodes, tableau
-from .loops.compiled import DesignFamily, kernel_of
+from .loops.compiled import DesignFamily, motions
 from .loops.torque import compiled
 from .model import fixed_zeros, form_of
 from .request import Ask, one_motion
@@ -218,13 +218,14 @@ def _in_lanes(
     scalars = {n: float(array) if array.ndim == 0 else array for n, array in arrays.items() if n != "mu"}
     family = DesignFamily(form_of({n: flat[n] for n in CENTRES if n in flat}), fixed_zeros(scalars))
     left = np.flatnonzero(answers.status < 0)
-    rows = np.stack([flat[name] for name in family.inputs], axis=1)
+    kernel = family.kernel()
+    rows = family.rows(kernel, {name: column[left] for name, column in flat.items()}, ask.branch)
     setup[:, TORQUE] = code.address
+    starts = np.append(setup[left], np.full((left.size, 1), kernel.code.address), axis=1)
     own = (
         *(answers.histories[n][left] for n in MOTION), answers.status[left], np.full((left.size, 5), nan)
     )  # fmt: skip
-    limits = np.append(how, 1.0)
-    _run(kernel_of(family, True), rows[left], setup[left], (answers.t, limits), own, threads, ask.deadline)
+    _run(rows, starts, (answers.t, np.append(how, 1.0)), own, threads, ask.deadline)
     for name, part in zip(MOTION, own, strict=False):
         answers.histories[name][left] = part
     answers.status[left] = own[3]
@@ -288,7 +289,6 @@ def _arc(values: Mapping[str, float]) -> tuple[float, float, float] | None:
 
 
 def _run(
-    kernel: Callable[..., object],
     rows: Array,
     setup: Array,
     shared: Sequence[Array],
@@ -296,12 +296,12 @@ def _run(
     threads: int | None,
     deadline: Deadline,
 ) -> None:
-    """Run the kernel over blocks of designs; designs are independent, so blocks do not change results."""
+    """Follow blocks of designs; designs are independent, so blocks do not change results."""
     A, C, last = tableau.A, tableau.C, tableau.STAGES
-    step = A[:last, :last].copy(), tableau.B, C[:last], tableau.E3, tableau.E5
-    tables = (*step, tableau.D, A[last + 1 :], C[last + 1 :], nodes.table())
+    step = A[:last, :last].copy(), tableau.B, C[:last].copy(), tableau.E3, tableau.E5
+    tables = (*step, tableau.D, A[last + 1 :].copy(), C[last + 1 :].copy(), nodes.table())
 
-    how, size = shared[1], len(setup)
+    how, size, kernel = shared[1], len(setup), motions()
 
     def stop() -> None:  # the kernel looks at the most steps before each one
         how[MOST_STEPS] = 0.0

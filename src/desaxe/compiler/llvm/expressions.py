@@ -4,6 +4,7 @@ import ast
 import builtins
 import math
 from collections.abc import Callable, Sequence
+from ctypes import CFUNCTYPE, c_int64
 from numbers import Integral
 from types import FunctionType
 from typing import Any, NamedTuple, NoReturn
@@ -80,6 +81,22 @@ def apart() -> None:
     """The promise that no two arrays among the arguments of the calling function share memory."""
 
 
+def address(array: Any) -> int:
+    """The address of an array."""
+    result: int = array.__array_interface__["data"][0]
+    return result
+
+
+def call(function: Any, *arguments: Any) -> int:
+    """Call machine code at an address with whole numbers and the addresses of arrays; its whole number."""
+    words = [int(v) if isinstance(v, Integral) else address(v) for v in arguments]
+    result: int = CFUNCTYPE(c_int64, *[c_int64] * len(words))(int(function))(*words)
+    return result
+
+
+OURS = (apart, address, call, mul_add)
+
+
 LIBRARY = ("sin", "cos", "asin", "atan2", "exp", "log", "nextafter")
 INTRINSICS = {"mul_add": "llvm.fmuladd.f64", **{name: name for name in LIBRARY}} | {
     name: f"llvm.{name}.f64" for name in ("sqrt", "floor", "fabs", "copysign")
@@ -106,6 +123,7 @@ class Expressions:
             "int64": self._whole, "int": self._whole, "empty": self._empty, "zeros": self._zeros,
             "isfinite": self._finite, "min": lambda nodes: self._least(nodes, True),
             "max": lambda nodes: self._least(nodes, False), "apart": lambda _: LoopValue("none", ()),
+            "address": self._address, "call": self._call,
         }  # fmt: skip
 
     # ---- instructions -------------------------------------------------------------------------
@@ -371,7 +389,7 @@ class Expressions:
         if not isinstance(node.func, ast.Name) or node.keywords:
             self.unknown(node)
         target = self.known(node.func.id)
-        if isinstance(target, FunctionType) and target not in (apart, mul_add):
+        if isinstance(target, FunctionType) and target not in OURS:
             return self._called(target, [self.value(one) for one in node.args])
         name = getattr(target, "__name__", "")
         if name in self._calls:
@@ -434,16 +452,28 @@ class Expressions:
         size = self.emit(f"call double @llvm.fabs.f64(double {self.number(nodes[0])})")
         return LoopValue("bool", (self.emit(f"fcmp olt double {size}, {bits_of(math.inf)}"),))
 
+    def _address(self, nodes: Sequence[ast.expr]) -> LoopValue:
+        return LoopValue("i64", (self.emit(f"ptrtoint ptr {self.value(nodes[0]).parts[0]} to i64"),))
+
+    def _call(self, nodes: Sequence[ast.expr]) -> LoopValue:
+        function = self.emit(f"inttoptr i64 {self.number(nodes[0], 'i64')} to ptr")
+        values = [self.value(node) for node in nodes[1:]]
+        passed = ", ".join(f"{parts_of(value.kind)[0]} {value.parts[0]}" for value in values)
+        return LoopValue("i64", (self.emit(f"call i64 {function}({passed})"),))
+
     def _empty(self, nodes: Sequence[ast.expr]) -> LoopValue:
         shape = nodes[0].elts if isinstance(nodes[0], ast.Tuple) else [nodes[0]]
         lengths = [self.value(one).constant for one in shape]
         if None in lengths:
             self.unknown(nodes[0])
         size = math.prod(length or 0 for length in lengths)
-        return LoopValue(Array("f64", len(lengths)), (self.alloca(f"[{size} x double]"), *map(str, lengths)))
+        item = "f64" if len(nodes) == 1 else "i64"  # the only other type
+        return LoopValue(
+            Array(item, len(lengths)), (self.alloca(f"[{size} x {LLVM[item]}]"), *map(str, lengths))
+        )
 
     def _zeros(self, nodes: Sequence[ast.expr]) -> LoopValue:
         array = self._empty(nodes)
         size = math.prod(int(length) for length in array.parts[1:])
-        self.do(f"store [{size} x double] zeroinitializer, ptr {array.parts[0]}")
+        self.do(f"store [{size} x {LLVM[array.kind.item]}] zeroinitializer, ptr {array.parts[0]}")
         return array

@@ -16,7 +16,7 @@ from textwrap import dedent
 from types import FunctionType
 from typing import Any, NamedTuple
 
-from .expressions import apart
+from .expressions import address, apart, call
 from .ir import WIDE
 from .machine import Code, compiled
 from .nest import FUNCTIONS
@@ -117,4 +117,4 @@ def _entry(function: Compiled, types: Sequence[Kind]) -> str:
     return "\n".join([f"define i64 @{ENTRY}(ptr %words) {WIDE} {{", *rows, "}"])
 
 
-__all__ = ["CompiledLoops", "LoopModule", "apart"]
+__all__ = ["CompiledLoops", "LoopModule", "address", "apart", "call"]

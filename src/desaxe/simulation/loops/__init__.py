@@ -1,6 +1,6 @@
-"""Motions by DOP853 and by panels, in plain loops whose text numba compiles.
+"""Motions by DOP853 and by panels, in plain loops, which are compiled.
 
-motions       motions of designs one after the other, which numba compiles
+motions       motions of designs one after the other, one call for all
 state         their state, where it starts and what becomes of it
 dop853        one of their steps in time
 dense         over a step, and inside of it

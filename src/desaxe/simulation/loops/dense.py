@@ -31,9 +31,10 @@ def dense(t: float, y: Any, h: float, new: Any, p: Any, setup: Any, tables: Any,
 
 def inside(x: float, y: Any, F: Any, i: Any) -> float:
     """A coordinate at the part x of a step."""
-    total = 0.0
+    total, even = 0.0, True
     for k in range(7):
-        total = (total + F[6 - k, i]) * (x if k % 2 == 0 else 1.0 - x)
+        total = (total + F[6 - k, i]) * (x if even else 1.0 - x)
+        even = not even
     return float(total + y[i])
 
 

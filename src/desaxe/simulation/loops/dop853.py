@@ -1,8 +1,8 @@
-"""DOP853: one step of one design, in plain loops, whose text numba compiles (`compiled`).
+"""DOP853: one step of one design, in plain loops, which are compiled (`compiled`).
 
 The method is that of Hairer, Norsett and Wanner, "Solving Ordinary Differential Equations I", section II,
 with the step control and the error norm of `stepper`: one design takes the steps that `simulate` takes for it
-alone. A constant that is passed on is an int64, for numba compiles a function anew for each literal.
+alone.
 
 tables   A, B, C, E3, E5, D and the rows of A and C for the dense output; that of the panels
 clock    the next step, 0 where it is not known; the length that the last one suggested; the longest; the end

@@ -1,4 +1,4 @@
-"""Motions of designs, one after the other, in plain loops, whose text numba compiles (`compiled`).
+"""Motions of designs, one after the other, in plain loops, which are compiled (`compiled`).
 
 A crank that turns fully goes by panels of the crank angle (`panel`) where its speed lets it; all others, and
 where panels fail, by steps in time (`dop853`).
@@ -18,14 +18,10 @@ from .dop853 import LONGEST, T_END, WISHED
 from .inside_panel import over_panel
 from .panel import by_panel
 from .picard import MOBILITY, ROWS
-from .state import account, energy_of, limits_of, place, rates, start, tell
+from .state import account, energy_of, limits_of, place, rates, start, still, tell
 
 if TYPE_CHECKING:
     from typing import Any
-
-    def still(theta: float, branch: float, p: Any) -> tuple[float, float, float]:
-        """M_eff [kg m^2], the torque of gravity [N m] and Y' [m]."""
-
 
 COLUMNS = int64(24)  # of the room of a panel
 
@@ -39,7 +35,7 @@ def told(
         first, last = limits_of(setup)
         # a load on a massless slider grows without bound at a limit angle
         near = min(last - y[0], y[0] - first) < 1e-3
-        status = 2 if near else 5 if least < 1e-8 * still(setup[6], setup[0], p)[0] else 4
+        status = 2 if near else 5 if least < 1e-8 * still(setup[6], 1.0, p, setup)[0] else 4
     scale = max(sums[1], sums[2])
     if not scale > 0.0:
         return status, t, 0.0, y[2], inf, made
@@ -90,7 +86,7 @@ def follow(
             if end < 0.0:
                 break
             status, memory[2] = 2 if beyond else -1, abs(new[0] - y[0])
-            least = min(least, still(place(new[0], setup)[0], setup[0], p)[0])
+            least = min(least, still(place(new[0], setup)[0], 1.0, p, setup)[0])
         account(y, new, p, setup, sums)
         t, steps = end, steps + 1
         status = 0 if status < 0 and t >= how[1] else status

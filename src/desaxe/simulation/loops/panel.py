@@ -31,12 +31,10 @@ from .picard import (
     still_at_nodes,
     sweep,
 )
+from .state import torque
 
 if TYPE_CHECKING:
     from typing import Any
-
-    def torque(t: float, theta: float, omega: float, number: float) -> float:
-        """The torque [N m]."""
 
 
 TRIALS = int64(8)

@@ -1,4 +1,4 @@
-"""Panels of the crank angle for one motion, in plain loops, whose text numba compiles (`compiled`).
+"""Panels of the crank angle for one motion, in plain loops, which are compiled (`compiled`).
 
 The crank angle is a good variable: the kinetic energy E and the time obey
 
@@ -7,7 +7,7 @@ The crank angle is a good variable: the kinetic energy E and the time obey
 and M_eff, loads and gravity are known at the nodes of a panel before E is. Only the torque asks for t and
 omega there. Picard's iteration finds them: a sweep asks for the torque at all nodes and integrates twice, by
 products with a constant matrix. Loops over the nodes run in the lanes of a vector, each design by itself;
-such short loops are vectors where LLVM does not unroll them before (`short_loops` of a module).
+such short loops are vectors where LLVM does not unroll them before.
 
 From rest E grows like the angle and t like its root: there the nodes lie in s, with theta - theta0 =
 width s^2, of which E/s^2, t and omega are smooth functions. Elsewhere s is the part of the width.
@@ -22,26 +22,14 @@ from __future__ import annotations
 from math import copysign, inf, nan, sqrt
 from typing import TYPE_CHECKING
 
-from numpy import int64
+from numpy import empty, int64
+
+from ...compiler.helpers import mul_add
+from ...compiler.llvm.loops import apart, call
+from .state import GRAVITY, INERTIA, TRAVEL, quantities, reduced, torque
 
 if TYPE_CHECKING:
     from typing import Any
-
-    def torque(t: float, theta: float, omega: float, number: float) -> float:
-        """The torque [N m]."""
-
-    def asked_at_nodes(number: float, room: Any, first: Any, count: Any) -> bool:
-        """Fill in the torques at the nodes, in the fourth row from one on; True if they could be had."""
-
-    def apart() -> None:
-        """The promise that arrays share no memory."""
-
-    def mul_add(a: float, b: float, c: float) -> float:
-        """a * b + c, rounded once where the machine can."""
-
-    def still_in_lanes(theta: float, branch: float, p: Any) -> tuple[float, float, float]:
-        """`still` with sine and cosine written out, so that a loop of it vectorises."""
-
 
 NODES = int64(16)
 MOBILITY, LOAD, WEIGHT, TORQUE, ENERGY, SLOWNESS, RATE, MISS, GAIN, PART = range(10)  # mobility: 1/M_eff
@@ -63,14 +51,15 @@ def furnish(rest: bool, table: Any, room: Any) -> None:
 
 def still_at_nodes(theta: float, width: float, p: Any, setup: Any, room: Any) -> None:
     """Inertia, loads and gravity, which depend on the angle alone."""
-    apart()
+    law: Any = empty((6, 16))
     for i in range(NODES):
-        angle = theta + width * room[PLACES, i]
-        inertia, weight, travel = still_in_lanes(angle, setup[0], p)
-        room[ANGLE, i] = angle
-        room[MOBILITY, i] = 1.0 / inertia
-        room[LOAD, i] = setup[5] * travel * room[STRETCH, i]
-        room[WEIGHT, i] = weight * room[STRETCH, i]
+        room[ANGLE, i] = theta + width * room[PLACES, i]
+        law[5, i] = reduced(room[ANGLE, i])
+    quantities(law[5], 1.0, p, setup, law)
+    for i in range(NODES):
+        room[MOBILITY, i] = 1.0 / law[INERTIA, i]
+        room[LOAD, i] = setup[5] * law[TRAVEL, i] * room[STRETCH, i]
+        room[WEIGHT, i] = law[GRAVITY, i] * room[STRETCH, i]
 
 
 def integrate(start: float, width: float, table: Any, kind: Any, room: Any, rate: Any, out: Any) -> None:
@@ -136,7 +125,7 @@ def course(t: float, energy: float, width: float, table: Any, room: Any) -> floa
 
 def ask(number: float, room: Any) -> float:
     """The torque at all nodes; by how much it has changed at most, NaN where it is none."""
-    if not asked_at_nodes(number, room, int64(TIME), NODES):
+    if call(int64(number), room[TIME], room.shape[1], NODES) != 0:
         return nan
     differ(room)
     most, none = 0.0, 0.0

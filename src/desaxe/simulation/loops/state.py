@@ -1,32 +1,60 @@
-"""The state of a motion in plain loops, whose text numba compiles (`compiled`): q, v and W of `equations`.
+"""The state of a motion in plain loops, which are compiled (`compiled`): q, v and W of `law`.
 
-It stands in a module with the functions `still`, `moving`, `potential` and `torque` that are written from
-the Program for the designs at hand.
+The mechanism is a kernel of the executor, at the address KERNEL of a setup.
 
-setup    a row per design: branch, limit angles, half of the arc (see `chart`), torque, F_Y, theta0,
-         omega_start, an energy that the loads suggest
+p        rows of a design: the packed inputs of the kernel, on its branch and on the other one
+setup    a row per design: branch, limit angles, half of the arc (see `coordinate`), the address of the
+         torque, F_Y, theta0, omega_start, an energy that the loads suggest, the address of the kernel
 scales   relative and absolute tolerances and sizes of q, v and W
 """
 
 from __future__ import annotations
 
-from math import asin, copysign, cos, inf, nan, pi, sin, sqrt
+from math import asin, atan2, copysign, cos, inf, nan, pi, sin, sqrt
 from typing import TYPE_CHECKING
+
+from numpy import empty, int64, zeros
+
+from ...compiler.llvm.loops import address, call
 
 if TYPE_CHECKING:
     from typing import Any
 
-    def still(theta: float, branch: float, p: Any) -> tuple[float, float, float]:
-        """M_eff [kg m^2], the torque of gravity [N m] and Y' [m]."""
+INERTIA, GRAVITY, TRAVEL, BEND, POTENTIAL = range(5)  # what the kernel gives
+KERNEL = 9  # its place in a setup
+REDUCED = 1e4  # rad: larger angles are reduced before the kernel takes them
 
-    def moving(theta: float, branch: float, p: Any) -> tuple[float, float, float, float]:
-        """M_eff, its derivative by theta, the torque of gravity and Y'."""
 
-    def potential(theta: float, branch: float, p: Any) -> float:
-        """The potential energy [J]."""
+def reduced(theta: float) -> float:
+    """An angle of the same sine and cosine that is not too large."""
+    return theta if abs(theta) <= REDUCED else atan2(sin(theta), cos(theta))
 
-    def torque(t: float, theta: float, omega: float, number: float) -> float:
-        """The torque [N m]."""
+
+def quantities(angles: Any, side: float, p: Any, setup: Any, out: Any) -> None:
+    """M_eff, the torque of gravity, Y', M_eff' and the potential energy at angles, a row each."""
+    words: Any = zeros(16, int64)
+    words[0], words[6] = address(angles), len(angles)
+    for k in range(5):
+        words[1 + k] = address(out[k])
+    for k in range(6):
+        words[7 + k] = 8
+    call(int64(setup[KERNEL]), words, words[6:], words[7:], p[0 if side > 0.0 else 1])
+
+
+def still(theta: float, side: float, p: Any, setup: Any) -> Any:
+    """The quantities at one angle, in their order."""
+    angle: Any = empty(1)
+    out: Any = empty((5, 1))
+    angle[0] = reduced(theta)
+    quantities(angle, side, p, setup, out)
+    return out[INERTIA, 0], out[GRAVITY, 0], out[TRAVEL, 0], out[BEND, 0], out[POTENTIAL, 0]
+
+
+def torque(t: float, theta: float, omega: float, number: float) -> float:
+    """The torque [N m] of the function at an address; NaN where it has none."""
+    rows: Any = empty(4)
+    rows[0], rows[1], rows[2] = t, theta, omega
+    return float(rows[3]) if call(int64(number), rows, 1, 1) == 0 else nan
 
 
 RELATIVE, ABSOLUTE, SIZE = 0, 1, 2  # rows of the scales
@@ -48,7 +76,7 @@ def limits_of(setup: Any) -> Any:
 def rates(t: float, y: Any, p: Any, setup: Any, out: Any) -> None:
     """The rates of q, v and W: the law without friction."""
     theta, slope, side = place(y[0], setup)
-    inertia, weight, travel = still(theta, side * setup[0], p)
+    inertia, weight, travel, _, _ = still(theta, side, p, setup)
     if not (0.0 < inertia < inf) or slope == 0.0:
         out[:] = nan
         return
@@ -61,7 +89,7 @@ def rates(t: float, y: Any, p: Any, setup: Any, out: Any) -> None:
 
 
 def square(x: float) -> float:
-    """x^2: numba compiles a loop for a power."""
+    """x^2."""
     return x * x
 
 
@@ -70,7 +98,7 @@ def tell(
 ) -> None:
     """Angle, speed and acceleration of a state, into the histories."""
     angle, _, side = place(q, setup)
-    inertia, slope, weight, travel = moving(angle, side * setup[0], p)
+    inertia, weight, travel, slope, _ = still(angle, side, p, setup)
     speed = side * v / sqrt(inertia)
     push = torque(t, angle, speed, setup[4]) + setup[5] * travel - weight
     theta[row], omega[row] = angle, speed
@@ -80,12 +108,12 @@ def tell(
 def energy_of(y: Any, p: Any, setup: Any) -> float:
     """Kinetic and potential energy."""
     theta, _, side = place(y[0], setup)
-    return float(0.5 * y[1] * y[1]) + potential(theta, side * setup[0], p)
+    return float(0.5 * y[1] * y[1] + still(theta, side, p, setup)[POTENTIAL])
 
 
 def start(p: Any, setup: Any, rtol: float, t_end: float, y: Any, scales: Any) -> bool:
     """The state at the start and the scales; whether there is an inertia to move."""
-    inertia, weight, _ = still(setup[6], setup[0], p)
+    inertia, weight, _, _, potential = still(setup[6], 1.0, p, setup)
     if not (0.0 < inertia < inf):
         return False
     if setup[3] > 0.0:
@@ -97,7 +125,7 @@ def start(p: Any, setup: Any, rtol: float, t_end: float, y: Any, scales: Any) ->
         y[0] = setup[6]
     y[1] = setup[7] * sqrt(inertia)
     y[2] = 0.0
-    energy = max(0.5 * y[1] * y[1], abs(potential(setup[6], setup[0], p)), abs(weight), setup[8])
+    energy = max(0.5 * y[1] * y[1], abs(potential), abs(weight), setup[8])
     for k in range(9):
         here = abs(torque(t_end * k / 8, setup[6], setup[7], setup[4]))
         if here < inf:
