@@ -24,6 +24,7 @@ from ..mechanism.messages import listed, named
 from ..support.checks import real_number
 from ..support.deadline import Deadline
 from ..support.shown import shown
+from .torque_derivative import TorqueDerivative
 
 Array = NDArray[np.float64]
 AHEAD = 1e-9  # rad: which piece of a table follows an angle
@@ -61,6 +62,10 @@ class Curve(ABC):
     @abstractmethod
     def slopes(self, t: Any, theta: Any, omega: Any, value: Any = None) -> Slopes:
         """The value and its derivatives; value: that, where it is known."""
+
+    def by_time(self, t: float, theta: float, omega: float) -> float:
+        """The derivative by time, NaN where it is not known."""
+        return 0.0
 
     def ahead(self, theta: float, omega: float, direction: float, growing: float = 1.0) -> "Curve":
         """The piece that holds from a state on: for this way of turning, and this sign of domega/dt."""
@@ -259,7 +264,9 @@ class FunctionCurve(Curve):
         arguments: tuple[str, ...],
         unit: str,
         deadline: Deadline,
+        derivative: TorqueDerivative | None = None,
     ) -> None:
+        self.derivative = derivative
         self.name, self.function, self.unit, self.deadline = name, by_position(function), unit, deadline
         self.arguments = arguments
         self.depends_on_time = "t" in arguments
@@ -294,12 +301,18 @@ class FunctionCurve(Curve):
         """The values, and their differences."""
         roles, by_theta, by_omega = set(self.arguments), 0.0, 0.0
         value = self.at(t, theta, omega) if value is None else value
+        if self.derivative is not None:
+            return Slopes(value, *self.derivative.at(t, theta, omega))
         if roles - {"t", "omega"}:
             by_theta = _difference(lambda x: self.at(t, x, omega), theta, 1.0, value)
         if roles & {"omega", "V_C"}:
             size = float(np.max(np.abs(omega)))
             by_omega = _difference(lambda x: self.at(t, theta, x), omega, size, value)
         return Slopes(value, by_theta, by_omega)
+
+    def by_time(self, t: float, theta: float, omega: float) -> float:
+        """dT/dt, if it is known; else NaN."""
+        return 0.0 if self.derivative is None else self.derivative.by_time(t, theta, omega)
 
     def _one(self, now: dict[str, float]) -> float:
         """The value at an instant, checked."""

@@ -9,7 +9,6 @@ import numpy as np
 from ..support.deadline import Deadline
 from ..support.forks import IMPORTS
 from .checks import design_values, drive_of, model_of, scalar
-from .derivatives.slopes import TorqueSlopes
 from .drive import AngleCurve, PositionCurve
 from .energy.alone import result_alone
 from .energy.motion import design_of, motion_of
@@ -17,6 +16,7 @@ from .energy.serves import tables_alone
 from .history import FORCES, instants_of, integrated
 from .march import March, Settings
 from .result import Simulation
+from .torque_derivative import TorqueDerivative
 
 
 class Ask(NamedTuple):
@@ -29,7 +29,7 @@ class Ask(NamedTuple):
     max_steps: int
     deadline: Deadline
     wrt: tuple[str, ...]
-    slopes: TorqueSlopes | None
+    derivative: TorqueDerivative | None
     until: tuple[float, ...]
 
 
@@ -42,13 +42,13 @@ def one_motion(
     """
     torque = starts["torque"]
     start = scalar("theta0", starts["theta0"], "rad"), scalar("omega_start", starts["omega_start"], "rad/s")
-    drive = drive_of(torque, given["F_X"], given["F_Y"], ask.deadline)
+    drive = drive_of(torque, given["F_X"], given["F_Y"], ask.deadline, ask.derivative)
     values = design_values(given)
     model = model_of(values, ask.branch, start[0], drive)
     known: dict[str, Any] = {**values, "branch": ask.branch}
     loads = {name: given[name] for name in FORCES if callable(given[name])}
     tables = tables_alone({**loads, **({"torque": torque} if callable(torque) else {})}, model.mu)
-    if energy and tables and "mu" not in ask.wrt:
+    if energy and tables and not ask.wrt:
         pushes = torque if callable(torque) else drive.torque.at(0.0, *start)
         design = design_of(values, model, pushes, loads.get("F_Y", values["F_Y"]), start)
         asked = np.append(instants_of(times, ask.t_end), ask.t_end)
@@ -64,11 +64,11 @@ def one_motion(
         run = March(model, y, ask.t_end, ask.until, Settings(ask.rtol, ask.max_steps), ask.deadline)
         run.to_the_end()
         result = integrated(run, ask.names, times, known)
-    if ask.slopes is not None:
+    if ask.wrt:
         with IMPORTS:
-            from .derivatives.sensitivities import add_sensitivities
+            from .slopes import add_slopes
 
         kept = zip(FORCES, drive[1:], strict=True)
         known |= {n: c.load for n, c in kept if isinstance(c, (AngleCurve, PositionCurve))}
-        add_sensitivities(result, run, ask.wrt, known, ask.slopes)
+        add_slopes(result, run, ask.wrt, known)
     return result

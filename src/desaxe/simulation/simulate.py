@@ -10,7 +10,7 @@ from ..runtime.request import check_common, with_known_inputs
 from ..support.checks import whole_number
 from ..support.deadline import Deadline
 from .checks import check_names, read_rtol, read_times, read_until, read_wrt, scalar
-from .derivatives.slopes import TorqueSlopes
+from .torque_derivative import torque_derivative
 from .request import Ask, one_motion
 from .result import Simulation
 from .rows import is_array, simulate_rows
@@ -121,7 +121,7 @@ def simulate(
     instants, angles, rtol = read_times(times, end), read_until(until), read_rtol(rtol)
     starts = {"theta0": theta0, "omega_start": omega_start, "torque": torque}
     by = read_wrt(wrt, {**given, **starts})
-    slopes = TorqueSlopes(torque, derivative) if by else None
+    slopes = torque_derivative(torque, derivative) if by else None
     ask = Ask(end, wanted, int(branch), rtol, max_steps, deadline, by, slopes, angles)
     motors = torque.numbers.values() if isinstance(torque, Motor) else ()
     if any(map(is_array, (*given.values(), *starts.values(), *motors))):

@@ -1,0 +1,145 @@
+"""Cuts of a motion that move with the parameters: by how much its derivatives jump there, and dt/dp.
+
+A cut at the angle theta_c(p) comes at dt/dp = (theta_c,p - theta_p)/omega, a standstill at -omega_p/alpha.
+Where the acceleration jumps there, omega_p jumps by (alpha before - alpha after) dt/dp. Where the motion only
+touches the angle or the standstill there is no such derivative: NaN.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from math import copysign, cos, nan, sin, sqrt
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanism.names import LENGTHS
+from .drive import Curve, PositionCurve
+from .events import V
+from .law import state_of
+from .march import March
+from .result import Event
+
+Array = NDArray[np.float64]
+SAME = 1e-9  # of the accelerations: a jump by less is rounding
+TOUCHED = 1e-6  # of the largest speed, or of its change in the motion's time: less is none
+Values = Callable[..., Mapping[str, Any]]
+
+
+class Shifts:
+    """The shifts of cuts by parameters; `notes` say where derivatives end.
+
+    values  quantities of the design at an angle
+    """
+
+    def __init__(self, run: March, wrt: Sequence[str], values: Values) -> None:
+        self.model, self.duration, self.wrt, self.values = run.model, run.t, wrt, values
+        self.notes: list[str] = []
+        self.of_centres: dict[str, Array] = {}
+        ends = np.array([*(panel.y for panel in run.panels), run.y]).T
+        self.fastest = float(np.nanmax(np.abs(state_of(self.model, *ends[: V + 1]).omega)))
+        arc = self.model.coordinate
+        self.of_limits = [self.limit(end) for end in (arc.first, arc.last)] if arc.half else []
+
+    # ---- jumps ------------------------------------------------------------------------------
+
+    def jump(self, before: Any, after: Any, theta_p: Array, y: Array) -> Array:
+        """By how much q_p and v_p (y: before) jump from one piece to the next."""
+        none = np.zeros(y.shape)
+        if before.law.rests:
+            return none  # it breaks away without a jump of alpha, or at an instant of its own
+        if after.law.rests:
+            return y * [[0.0], [-1.0]]
+        theta, omega = state_of(self.model, *after.y[: V + 1].tolist())
+        instant = after.start, theta, omega
+        left, right = (float(piece.law.alpha(*instant)) for piece in (before, after))
+        least = SAME * (abs(left) + abs(right))
+        if abs(left - right) <= least:
+            return none
+        root = sqrt(float(self.model.inertia(theta)))
+        if omega == 0.0:
+            return np.stack([none[0], (left - right) * root * self._turn(after.start, left, y[1] / root)])
+        shares, last = self._shares(before, after, instant, left)
+        if not shares:
+            return none  # the guide only changes sides, where it does not press: alpha differs by rounding
+        shifts = {curve: self.kink(curve, theta) for curve in shares}
+        first = next(iter(shifts))
+        if all((shift == shifts[first]).all() for shift in shifts.values()):
+            shares = {first: left - right}  # with what friction makes of it on the other side of the guide
+        elif abs(last - right) > least:
+            self.notes.append(
+                f"NaN from t = {after.start:.6g} s on, where the friction jumps with several loads"
+            )
+            return none + nan
+        times = [share * self.passage(after.start, omega, shifts[c], theta_p) for c, share in shares.items()]
+        return np.stack([none[0], root * np.sum(times, axis=0)])
+
+    def _shares(
+        self, before: Any, after: Any, instant: tuple[float, float, float], left: float
+    ) -> tuple[dict[Curve, float], float]:
+        """By how much each load that changes lowers alpha, and alpha with all of them."""
+        shares: dict[Curve, float] = {}
+        last, drive = left, before.law.drive
+        for name, curve in after.law.drive._asdict().items():
+            drive = drive._replace(**{name: curve})
+            alpha = float(before.law.with_drive(drive).alpha(*instant))
+            if abs(alpha - last) > SAME * (abs(left) + abs(alpha)):
+                shares[curve] = last - alpha
+            last = alpha
+        return shares, last
+
+    def passage(self, t: float, omega: float, shift: Array, theta_p: Array) -> Array:
+        """dt/dp where the crank passes an angle that moves by `shift`; NaN where it only touches it."""
+        if abs(omega) <= TOUCHED * self.fastest:
+            self.notes.append(f"NaN where an angle is only touched, at t = {t:.6g} s")
+            return np.full(len(self.wrt), nan)
+        return np.asarray((shift - theta_p) / omega)
+
+    def standstill(self, event: Event, piece: Any, y: Array) -> Array:
+        """dt/dp of a standstill on a piece."""
+        root = sqrt(float(self.model.inertia(event.theta)))
+        return self._turn(event.t, float(piece.law.alpha(event.t, event.theta, 0.0)), y[1] / root)
+
+    def _turn(self, t: float, alpha: float, omega_p: Array) -> Array:
+        """dt/dp of a standstill; NaN where the crank only touches it."""
+        if not self.accelerates(alpha):
+            self.notes.append(f"NaN where a standstill is only touched, at t = {t:.6g} s")
+            return np.full(len(self.wrt), nan)
+        return -omega_p / alpha
+
+    def accelerates(self, alpha: float) -> bool:
+        """True for an acceleration that changes the speed within the motion's time."""
+        return abs(alpha) * self.duration > TOUCHED * self.fastest
+
+    # ---- angles that move ----------------------------------------------------------------------
+
+    def _by_lengths(self, slopes: Mapping[str, float]) -> Array:
+        return np.array([slopes.get(p, 0.0) for p in self.wrt])
+
+    def kink(self, curve: Curve, theta: float) -> Array:
+        """The shift of a kink of a load by each parameter: one over the slider moves with the lengths."""
+        if not isinstance(curve, PositionCurve):
+            return self._by_lengths({})
+        load = curve.load
+        known = self.values(load.motion(("theta", *LENGTHS)), theta)
+        numbers = {name: float(value) for name, value in known.items()}
+        along = float(load.moved("theta", numbers))
+        return self._by_lengths({p: -float(load.moved(p, numbers)) / along for p in LENGTHS})
+
+    def dead_centre(self, event: Event) -> Array:
+        """The shift of a dead centre by each parameter: the same in every turn."""
+        if event.which not in self.of_centres:
+            self.of_centres[event.which] = self._dead_centre(event.theta)
+        return self.of_centres[event.which]
+
+    def _dead_centre(self, theta: float) -> Array:
+        known = self.values(("Y_wrt_theta_theta", *(f"Y_wrt_theta_{p}" for p in LENGTHS)), theta)
+        bend = float(known["Y_wrt_theta_theta"])
+        return self._by_lengths({p: -float(known[f"Y_wrt_theta_{p}"]) / bend for p in LENGTHS})
+
+    def limit(self, theta: float) -> Array:
+        """The shift of a limit angle, at which ec + AB sin(theta) = BC or -BC; NaN at a change point."""
+        ec, AB, _ = self.model.lengths
+        side, arm = copysign(1.0, ec + AB * sin(theta)), AB * cos(theta)
+        if abs(arm) <= TOUCHED * AB:
+            return self._by_lengths(dict.fromkeys(LENGTHS, nan))
+        return self._by_lengths({"ec": -1.0 / arm, "AB": -sin(theta) / arm, "BC": side / arm})
