@@ -9,7 +9,8 @@ import pytest
 import desaxe as dx
 from tests.effort import cases
 from tests.motions import true_slopes
-from tests.simulation.by_time import by_time
+from tests.simulation.energy.test_energy import MACHINE
+from tests.simulation.energy.test_energy import drawn as energy_designs
 
 PRESS = {
     "AB": 0.14, "BC": 0.31, "ec": 0.06, "m_crank": 0.7637, "m_rod": 1.559464, "m_slider": 1.95025,
@@ -220,6 +221,32 @@ def test_a_limit_angle_and_when_it_is_reached(omega_start, mu):
         assert found[f"work_wrt_{p}"] == pytest.approx(wanted["work"], rel=1e-4, abs=1e-5)
 
 
+@pytest.mark.sampled
+def test_random_machines_up_to_a_limit_angle():
+    designs, wrt = energy_designs(cases(60, 200, 1_000), 8), ["AB", "ec", "m_slider", "theta0", "torque"]
+    call = {"t_end": 0.8, "times": [0.0]}
+    limit = np.flatnonzero(dx.simulate(**call, **designs)["status"] == 2)
+    assert limit.size >= 5
+    for row in limit:
+        one = {name: float(np.broadcast_to(v, limit[-1] + 1)[row]) for name, v in designs.items()}
+        found = dx.simulate(**call, wrt=wrt, **one)
+        for p in wrt:
+            truth = differences(call, one, p)
+            if truth is not None:
+                for key in ("t_last", "work"):
+                    assert found[f"{key}_wrt_{p}"] == pytest.approx(truth[key], rel=1e-5, abs=1e-5)
+
+
+@pytest.mark.parametrize("start", [0.0, 1e-7, -1e-7])
+def test_next_to_rest(start):
+    """At rest and barely moving: the derivatives are one smooth function of the start."""
+    wrt = ["AB", "m_slider", "theta0", "omega_start", "torque"]
+    call = {"t_end": 0.5, "times": [0.1, 0.5], "wrt": wrt, "torque": 1.0, "theta0": 0.4}
+    near, far = (dx.simulate(**call, omega_start=omega, **MACHINE) for omega in (start, 1e-4))
+    for p in wrt:
+        np.testing.assert_allclose(near[f"theta_wrt_{p}"], far[f"theta_wrt_{p}"], rtol=1e-3, atol=1e-3)
+
+
 @pytest.mark.parametrize("kind", ["number", "over Y", "over the stroke", "over theta"])
 def test_the_work_up_to_a_limit_angle_is_that_of_where_it_starts(kind):
     """A constant torque, and a load F(Y) or F(theta): what they do less when the crank starts later."""
@@ -240,13 +267,14 @@ def test_the_work_up_to_a_limit_angle_is_that_of_where_it_starts(kind):
 
 
 def test_the_work_where_a_torque_jumps_just_before_a_limit_angle():
-    """At .7956 rad: the integrator's last panel starts with the jump; the energy form has no such panel."""
+    """The last panel starts with the jump; the work is 0.25 (0.78 - theta0) + 3 (limit - 0.78)."""
     torque = dx.over_theta([-1.0, 0.78, 1.5], [0.25, 3.0, 0.25], kind="step")
     call = {"t_end": 1.0, "theta0": 0.3, "omega_start": 9.0, "wrt": ["AB", "theta0"], **ROCKER}
-    ours, theirs = (simulate(torque=torque, **call) for simulate in (by_time, dx.simulate))
-    assert ours["status"] == theirs["status"] == 2
-    for p in call["wrt"]:
-        assert ours[f"work_wrt_{p}"] == pytest.approx(theirs[f"work_wrt_{p}"], rel=1e-5)
+    found = dx.simulate(torque=torque, **call)
+    assert found["status"] == 2
+    limit = math.asin((ROCKER["BC"] - ROCKER["ec"]) / ROCKER["AB"])
+    assert found["work_wrt_theta0"] == pytest.approx(-0.25, rel=1e-7)
+    assert found["work_wrt_AB"] == pytest.approx(-3.0 * math.tan(limit) / ROCKER["AB"], rel=1e-7)
 
 
 Y_PLACES, ANGLES = [0.029, 0.036, 0.093, 0.095, 0.125], [0.672, 1.516, 1.616, 2.342, 3.009]
@@ -342,12 +370,11 @@ def test_a_break_away_comes_when_the_torque_is_enough():
 
 
 def test_an_array_of_designs_has_those_of_each():
-    """Many designs are differentiated in the energy form, one here along the integrator's motion."""
     wrt, masses = ["m_slider", "torque", "omega_start"], np.array([[1.0, 2.0], [3.0, -1.0]])
     call = {"torque": 0.25, "t_end": 0.3, "times": [0.1, 0.3], "omega_start": 2.0, "wrt": wrt}
     found = dx.simulate(**call, **{**PRESS, "m_slider": masses})
     for at in ((0, 0), (0, 1), (1, 0)):
-        one = by_time(**call, **{**PRESS, "m_slider": masses[at]})
+        one = dx.simulate(**call, **{**PRESS, "m_slider": masses[at]})
         for p in wrt:
             for key in (f"theta_wrt_{p}", f"omega_wrt_{p}", f"t_last_wrt_{p}", f"work_wrt_{p}"):
                 np.testing.assert_allclose(found[key][at], one[key], rtol=1e-8, atol=1e-12)

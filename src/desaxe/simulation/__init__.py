@@ -14,7 +14,9 @@ events        what happens inside a panel
 history       histories of angle, speed, quantities and energy
 residual      the energy residual, and a message where it is unusual
 result        the result and its statuses
-derivatives   exact derivatives of a motion by parameters
+slopes        the exact derivatives of a motion by parameters
+shifts        how its cuts move with them
+torque_derivative   the derivatives of a torque that is a function
 energy        motions with the crank angle as the independent variable, where time does not enter
 loops         many motions under a compiled function, in plain loops whose text numba compiles
 """

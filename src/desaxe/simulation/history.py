@@ -15,7 +15,7 @@ from .march import March
 from .model import Model
 from .panel import NODES, Panel, basis
 from .residual import energy_residual, told_of
-from .result import FAILED, LIMIT, REST, SENSITIVITIES, Event, Simulation
+from .result import FAILED, LIMIT, REST, Event, Simulation
 
 Array = NDArray[np.float64]
 FORCES = ("F_X", "F_Y")
@@ -56,32 +56,6 @@ def result_of(
         energy_residual=ended.residual, work=ended.work, t_last=ended.t, method=ended.method,
         solution=Solution(ended.states, ended.t),
     )  # fmt: skip
-
-
-def add_slopes(
-    result: Simulation,
-    wrt: Sequence[str],
-    slopes: Sequence[Array],
-    of_events: Sequence[Array],
-    notes: Sequence[str],
-) -> None:
-    """Add theta_wrt_<p>, omega_wrt_<p>, t_last_wrt_<p> and work_wrt_<p>, and `wrt` of each event.
-
-    slopes   of the histories of angle and speed, a row for each p; of the end and the work
-    notes    say where there is no derivative
-    """
-    theta, omega, ended, work = slopes
-    for k, p in enumerate(wrt):
-        result[f"theta_wrt_{p}"], result[f"omega_wrt_{p}"] = theta[k].copy(), omega[k].copy()
-        result[f"t_last_wrt_{p}"], result[f"work_wrt_{p}"] = float(ended[k]), float(work[k])
-    result["events"] = [
-        event._replace(wrt=dict(zip(wrt, own.tolist(), strict=True)))
-        for event, own in zip(result["events"], of_events, strict=True)
-    ]
-    if not notes and not (np.isfinite(theta).all() and np.isfinite([ended, work]).all()):
-        notes = ["NaN where the forces have no derivatives, or none is known"]
-    if notes:
-        result["message"] += SENSITIVITIES + "; ".join(dict.fromkeys(notes))
 
 
 def instants_of(times: Any, end: float) -> Array:

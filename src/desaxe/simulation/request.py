@@ -10,7 +10,6 @@ from ..support.deadline import Deadline
 from ..support.forks import IMPORTS
 from .checks import design_values, drive_of, model_of, scalar
 from .drive import AngleCurve, PositionCurve
-from .energy.alone import result_alone
 from .energy.motion import design_of, motion_of
 from .energy.serves import tables_alone
 from .history import FORCES, instants_of, integrated
@@ -53,12 +52,9 @@ def one_motion(
         design = design_of(values, model, pushes, loads.get("F_Y", values["F_Y"]), start)
         asked = np.append(instants_of(times, ask.t_end), ask.t_end)
         with np.errstate(all="ignore"):  # values beyond every double: the panels of time tell
-            motion = motion_of(
-                model, design._replace(wrt=ask.wrt), ask.until, asked, ask.rtol, ask.max_steps, ask.deadline
-            )
-            result = None if motion is None else result_alone(motion, ask.names, times, {**known, **loads})
-        if result is not None:
-            return result
+            motion = motion_of(model, design, ask.until, asked, ask.rtol, ask.max_steps, ask.deadline)
+            if motion is not None:
+                return motion.result(ask.names, times, {**known, **loads})
     y = np.array([model.coordinate.q(start[0]), start[1] * sqrt(model.inertia(start[0])), 0.0])
     with np.errstate(all="ignore"):  # values beyond every double end the motion with a status
         run = March(model, y, ask.t_end, ask.until, Settings(ask.rtol, ask.max_steps), ask.deadline)

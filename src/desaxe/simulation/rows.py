@@ -125,13 +125,13 @@ def simulate_rows(
             status[np.isnan(zero_of(load, [flat[n] for n in LENGTHS], ask.branch))] = NO_START
     answers = Answers(size, t, ask, status)
     how = np.array([ask.rtol, ask.t_end, inf, ask.max_steps])
-    together = not ask.until and not np.any(arrays["mu"]) and "mu" not in ask.wrt
+    together = not (ask.until or ask.wrt or np.any(arrays["mu"]))
     over_angles = together and tables_alone(varying, 0.0)
     if over_angles:
         scalars = {n: float(array) if array.ndim == 0 else array for n, array in arrays.items() if n != "mu"}
         designs = designs_of({**scalars, **varying}, flat, setup, ask.branch)
-        _over_angles(ask, designs._replace(wrt=ask.wrt), answers, how, threads)
-    elif together and not ask.wrt and _is_function(torque) and varying.keys() == {"torque"}:
+        _over_angles(ask, designs, answers, how, threads)
+    elif together and _is_function(torque) and varying.keys() == {"torque"}:
         _in_lanes(ask, torque, arrays, flat, setup, answers, how, threads)
     done = np.flatnonzero(answers.ways != "")
     if ask.names and done.size:
@@ -182,24 +182,14 @@ def _one_by_one(
 
 def _over_angles(ask: Ask, designs: Designs, answers: Answers, how: Array, threads: int | None) -> None:
     """Fill in the motions that have an energy form."""
-    size, t, wrt = answers.size, answers.t, ask.wrt
+    size, t = answers.size, answers.t
     states = np.where(answers.status == NO_START, NO_START, -1).astype(np.int8)
     numbers = np.full((size, 4), nan)
-    slopes = [np.full((size, len(wrt), t.size), nan) for _ in range(2)]
-    slopes += [np.full((size, len(wrt)), nan) for _ in range(2)]
     motion = [answers.histories[name] for name in MOTION]
-    by_energy(designs, t, how, (*motion, states, numbers), threads, ask.deadline, slopes if wrt else ())
+    by_energy(designs, t, how, (*motion, states, numbers), threads, ask.deadline)
     done = np.flatnonzero((states >= 0) & (states != NO_START))
     answers.status[done] = states[done]
     answers.told(ENERGY, done, numbers)
-    for k, p in enumerate(wrt):
-        for name, values in zip(("theta", "omega", "t_last", "work"), slopes, strict=True):
-            table = answers.numbers if values.ndim == 2 else answers.histories
-            table[f"{name}_wrt_{p}"][done] = values[done, k]
-    if wrt:
-        known = np.isfinite(slopes[0]).sum(axis=2) >= np.isfinite(motion[0]).sum(axis=1)[:, None]
-        known &= np.isfinite(slopes[3])
-        answers.without += done[~known[done].all(axis=1)].tolist()
 
 
 def _in_lanes(
@@ -354,12 +344,8 @@ def by_energy(
     outs: Sequence[Any],
     threads: int | None,
     deadline: Deadline,
-    slopes: Sequence[Array] = (),
 ) -> None:
-    """Fill in the motions that have an energy form; the status of the others stays below 0.
-
-    slopes   where designs have parameters of derivatives: as `Histories`
-    """
+    """Fill in the motions that have an energy form; the status of the others stays below 0."""
     status, most = outs[3], limits[MOST_STEPS:].copy()
     rows = np.flatnonzero((status < 0) & served(designs))
     times, brief = np.append(t, limits[1]), np.minimum(most, BRIEF)
@@ -376,8 +362,6 @@ def by_energy(
         for out, values in zip(outs[:3], found[:3], strict=True):
             out[own[there]] = values[there, :-1]
         status[own[there]], outs[4][own[there], :4] = found.status[there], found.numbers[there]
-        for out, values in zip(slopes, found.by or (), strict=False):
-            out[own[there]] = values[there] if values.ndim == 2 else values[there, :, :-1]
         return unfinished
 
     if 0 < rows.size <= LONGEST_BLOCK:  # a thread of its own would take longer than short motions do

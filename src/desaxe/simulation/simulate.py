@@ -10,10 +10,10 @@ from ..runtime.request import check_common, with_known_inputs
 from ..support.checks import whole_number
 from ..support.deadline import Deadline
 from .checks import check_names, read_rtol, read_times, read_until, read_wrt, scalar
-from .torque_derivative import torque_derivative
 from .request import Ask, one_motion
 from .result import Simulation
 from .rows import is_array, simulate_rows
+from .torque_derivative import torque_derivative
 
 
 @with_known_inputs
@@ -86,7 +86,7 @@ def simulate(
                      the rtol to repeat with
     work             of torque, loads and friction, gravity not included [J]
     method           "energy": over the crank angle, where torque and loads are numbers or tables without
-                     friction; else "panels" of time
+                     friction, and without wrt; else "panels" of time
     t_last           when the motion ends [s]
     solution         function t -> dict of theta and omega, anywhere up to the end
     theta_wrt_<p>, omega_wrt_<p>   for each p of wrt: derivatives of the histories at each instant

@@ -1,10 +1,10 @@
 """The derivatives of a motion by parameters, on the panels of its record.
 
-In q and v = sqrt(M) omega (see `law`) a motion is smooth up to its limit angles, and so are its derivatives at
-a fixed time. With the rates q' = omega/(dtheta/dq) and v' = Q/sqrt(M) they obey linear equations, solved like
-the motion itself by collocation on each panel, for both starts and for each parameter as right-hand sides of
-one matrix; panels are halved where they do not resolve them. Friction takes the torque R = k N, of the normal
-force N without friction at the acceleration alpha, and
+In q and v = sqrt(M) omega (see `law`) a motion is smooth up to its limit angles, and so are its derivatives
+at a fixed time. With q' = omega/(dtheta/dq) and v' = Q/sqrt(M) they obey linear equations, solved like the
+motion itself by collocation on each panel, for both starts and for each parameter as right-hand sides of one
+matrix; panels are halved where they do not resolve them. Friction takes the torque k N, of the normal force N
+without friction at the acceleration alpha, and
 
     M alpha + h + k N = Q,    k = mu s Y'/(1 - mu s lean),    lean = branch tan(phi),
 
@@ -36,6 +36,7 @@ CREEP = 1e-100  # rad/s: a load knows the direction of the crank, inertia does n
 BARELY = 1e-30  # rad/s: turning, for friction; without an effect of its own
 RESOLVED = 1e-11  # of a series: its last terms, at most
 LEAST = 1e-12  # of a column's largest coefficient: a panel with less need not resolve it
+AT_ONCE = 1000  # panels whose matrices are in memory
 HALVINGS = 10  # of a panel of the motion, at most
 WELL_BEFORE = 0.1  # of q: so far from a limit angle the friction has its digits
 SHORT = 0.99  # of the last panel before a limit angle: its nodes keep their digits
@@ -117,7 +118,7 @@ class MotionSlopes:
                 rows[k] += known.get(_slope(name, p), 0.0)
         return rows
 
-    def angles(self, q: Array) -> tuple[Array, Array, Array]:
+    def angles(self, q: Any) -> tuple[Array, Array, Array]:
         """The crank angle, its derivatives, and those of dtheta/dq."""
         arc, rows = self.model.coordinate, np.zeros((2, 2 + len(self.wrt), *np.shape(q)))
         rows[0, 0] = 1.0
@@ -190,7 +191,7 @@ class MotionSlopes:
         of_alpha = (of_alpha - of_arm * known["N_C"] - arm * of_normal) / (inertia + arm * by_alpha)
         return arm * known["N_C"], of_arm * known["N_C"] + arm * (of_normal + by_alpha * of_alpha)
 
-    def _energy(self, q: Array, v: Array, y: Array) -> Array:
+    def _energy(self, q: Any, v: Any, y: Array) -> Array:
         """The derivatives of the energy by the parameters at a fixed time; y: those of q and v."""
         theta, by_theta, _ = self.angles(q)
         rows = self._rows("potential_energy", self.values(self._names("potential_energy"), theta), by_theta)
@@ -207,8 +208,9 @@ class MotionSlopes:
         if self.ends_at_limit:
             h[-1] *= SHORT
         for _ in range(HALVINGS):
-            if new.any():
-                local[new] = self._local(piece[new], start[new], h[new])
+            for rows in np.array_split(np.flatnonzero(new), new.sum() // AT_ONCE + 1):
+                if rows.size:
+                    local[rows] = self._local(piece[rows], start[rows], h[rows])
             course = self._joined(piece, start, h, local)
             bad = course.unresolved()
             if self.ends_at_limit:
@@ -253,12 +255,14 @@ class MotionSlopes:
         right = np.zeros((h.size, 2, NODES, 2 + len(self.wrt)))
         right[:, 0, :, 0] = right[:, 1, :, 1] = 1.0
         right[..., 2:] = width * (RUNNING @ forcing)
-        state = np.linalg.solve(square, right.reshape(h.size, 2 * NODES, 2 + len(self.wrt))).reshape(right.shape)
+        state = np.linalg.solve(square, right.reshape(h.size, 2 * NODES, 2 + len(self.wrt))).reshape(
+            right.shape
+        )
         slopes = np.einsum("neik,nikp->nekp", jacobian, state)
         slopes[..., 2:] += forcing
         return np.asarray(width * (INTEGRAL @ slopes))
 
-    def _joined(self, piece: Array, start: Array, h: Array, local: Array) -> Trajectories:
+    def _joined(self, piece: NDArray[np.intp], start: Array, h: Array, local: Array) -> Trajectories:
         """The course through all pieces."""
         y, before = self._start(), self.pieces[0]
         ends, begin = local.sum(axis=2), np.empty((start.size, 2, len(self.wrt)))  # polynomials are 1 there
@@ -282,7 +286,7 @@ class MotionSlopes:
 
     def _angle(self, q: float, y: Array) -> Array:
         """theta_p where q is known and y its derivatives and those of v."""
-        _, by_theta, _ = self.angles(np.float64(q))
+        _, by_theta, _ = self.angles(q)
         return np.asarray(by_theta[0] * y[0] + by_theta[2:])
 
     # ---- results ---------------------------------------------------------------------------------
@@ -358,25 +362,18 @@ class MotionSlopes:
         Next to a limit angle derivatives of the potential energy have no digits: from the nodes of the last
         panel a series goes on.
         """
-        first, (q, v, _) = self.pieces[0], self.run.y
-        start = self._energy(*first.y[:2], self.course.y[0])
-        if not self.ends_at_limit:
-            end = self._energy(q, v, self.course.at(np.array([self.run.t]))[..., 0])
-            return np.asarray(end - start + self._power(self.run.t, q, v) * of_end)
-        begin, h = self.course.start[-1:], self.course.h[-1:]
-        t, q, v = (rows[0] for rows in self._nodes(begin, h))
-        values = [*self._energy(q, v, self.course.at(t)), self._power(t, q, v)]
-        end = np.array(values) @ SERIES.T @ basis(2.0 * (self.run.t - begin) / h - 1.0, NODES - 1)[:, 0]
-        return np.asarray(end[:-1] - start + end[-1] * of_end)
-
-    def _power(self, t: Any, q: Any, v: Any) -> Any:
-        """The rate of both energies."""
-        law = self.pieces[-1].law
-        if law.rests:
-            return 0.0
-        t, q, v = np.atleast_1d(t), np.atleast_1d(q), np.atleast_1d(v)
-        power = law.rates(t, q, v).work
-        return power if power.size > 1 else float(power[0])
+        t, (q, v, _), last = np.array([self.run.t]), self.run.y[:, None], slice(-1, None)
+        if self.ends_at_limit:
+            t, q, v = (rows[0] for rows in self._nodes(self.course.start[last], self.course.h[last]))
+        power = self.pieces[-1].law.rates(t, q, v).work
+        end = np.array([*self._energy(q, v, self.course.at(t)), power + np.zeros(t.size)])
+        if self.ends_at_limit:
+            s = 2.0 * (self.run.t - self.course.start[last]) / self.course.h[last] - 1.0
+            end = end @ SERIES.T @ basis(s, NODES - 1)
+        begin = self.pieces[0].y
+        return np.asarray(
+            end[:-1, 0] + end[-1, 0] * of_end - self._energy(begin[Q], begin[V], self.course.y[0])
+        )
 
 
 class _State(NamedTuple):

@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from ...support.panels import NODES
 from ..result import FAILED, LIMIT
-from .along import Histories, MotionAlong, histories_of
-from .by_parameters import Sensitivities, sensitivities_of
 from .course import accelerations, account
 from .loops.compiled import TABLES, motions
 from .panels import Designs, Fields, fields_of, first_edges, halved
@@ -17,7 +15,6 @@ Array = NDArray[np.float64]
 PIECE = 24  # numbers of a piece: see `follow`
 TOO_WIDE, NOT_HERE = 10, 11  # statuses of `follow`
 ROUNDS = 14  # halvings of a panel
-RESOLVED = 4  # after so many what is left of derivatives by parameters is rounding
 WITHIN = np.array([1e-13, 1e-9])  # rad: from a limit angle
 FINEST, COARSEST = 3e-14, 1e-6  # how small the last terms of series must be at least and at most
 
@@ -33,7 +30,6 @@ class FollowedMotions(NamedTuple):
     alpha: Array
     status: NDArray[np.int8]
     numbers: Array
-    by: Histories | None = None
 
 
 class Marched(NamedTuple):
@@ -44,7 +40,6 @@ class Marched(NamedTuple):
     status: NDArray[np.int8]
     numbers: Array
     way: Array
-    by: Sensitivities | None = None
 
 
 def follow_many(
@@ -53,16 +48,16 @@ def follow_many(
     """The motions up to the last instant. Status NOT_HERE: the energy form does not serve.
 
     most   pieces of a motion: an array, which another thread may set to 0
-    kept   of one design, without wrt: room for all of its pieces, as `follow` keeps them; if it is too
+    kept   of one design: room for all of its pieces, as `follow` keeps them; if it is too
            little, status 12
     """
-    x, omega, status, numbers, way, by = _marched(designs, times, rtol, most, kept)
+    x, omega, status, numbers, way = _marched(designs, times, rtol, most, kept)
     if (status >= TOO_WIDE).all():
         return FollowedMotions(x[:, 1:], omega[:, 1:], omega[:, 1:], status, numbers[:, :4])
     limit = status == LIMIT
     ended = limit | (status == FAILED)
     x[ended, -1] = numbers[ended, 1]
-    theta, rate = x if by is None else x.copy(), omega.copy() if by is not None else omega
+    theta = x
     places = designs.at_angles(theta)
     at, slope = places.values, places.slope
     if limit.any():
@@ -76,11 +71,7 @@ def follow_many(
     begin = 1 + np.flatnonzero(times == 0.0)  # there pieces have rounded the start
     theta[:, begin], omega[:, begin] = theta[:, :1], omega[:, :1]
     told[:, 0] = np.where(ended, np.minimum(numbers[:, 0], times[-1]), times[-1])
-    found = FollowedMotions(theta[:, 1:], omega[:, 1:], alpha[:, 1:], status, told)
-    if by is None:
-        return found
-    motion = MotionAlong(x[:, 1:], rate[:, 1:], omega[:, 1:], alpha[:, 1:], status, places)
-    return found._replace(by=histories_of(designs, by, motion))
+    return FollowedMotions(theta[:, 1:], omega[:, 1:], alpha[:, 1:], status, told)
 
 
 def _at_limits(designs: Designs, theta: Array) -> Array:
@@ -103,18 +94,16 @@ def _marched(
     """The motions in their coordinates; designs whose panels are too wide again, on halves of them."""
     tolerance = min(max(rtol, FINEST), COARSEST)
     edges = first_edges(designs, tolerance)
-    found, bad = _tried(designs, edges, times, tolerance, most, kept, False)
+    found, bad = _tried(designs, edges, times, tolerance, most, kept)
     rows = np.flatnonzero(found.status == TOO_WIDE)
     edges, bad = edges[rows], bad[rows]
-    for halving in range(ROUNDS):
+    for _ in range(ROUNDS):
         if not rows.size:
             return found
         part, edges = designs.some(rows), halved(edges, bad)
-        answer, bad = _tried(part, edges, times, tolerance, most, kept, halving >= RESOLVED)
+        answer, bad = _tried(part, edges, times, tolerance, most, kept)
         found.x[rows], found.speed[rows] = answer.x, answer.speed
         found.status[rows], found.numbers[rows] = answer.status, answer.numbers
-        for own, values in zip(found.by or (), answer.by or (), strict=True):
-            own[rows] = values
         again = answer.status == TOO_WIDE
         rows, edges, bad = rows[again], edges[again], bad[again]
     found.status[rows] = NOT_HERE
@@ -122,13 +111,9 @@ def _marched(
 
 
 def _tried(
-    designs: Designs, edges: Array, times: Array, tolerance: float, most: Array, kept: Array | None,
-    last: bool,
+    designs: Designs, edges: Array, times: Array, tolerance: float, most: Array, kept: Array | None
 ) -> tuple[Marched, NDArray[np.int8]]:  # fmt: skip
-    """The motions on panels between these edges, and the panels that are too wide.
-
-    last   to take derivatives by parameters as resolved
-    """
+    """The motions on panels between these edges, and the panels that are too wide."""
     fields = fields_of(designs, edges)
     count, inertia = len(fields.edges), fields.inertia[:, 0]
     begin = np.argmax(fields.edges == designs.coordinates(designs.theta0)[:, None], axis=1)
@@ -143,14 +128,13 @@ def _tried(
     bad = np.zeros((count, fields.rough.shape[1]), np.int8)
     x, speeds, numbers = (np.empty((count, n)) for n in (1 + times.size, 1 + times.size, 6))
     outs = x, speeds, status, bad, numbers
-    if designs.wrt:
-        by = sensitivities_of(designs, fields, setup, times, tolerance, most, outs, last)
-        return Marched(x, speeds, status, numbers, way, by), bad
     pieces = np.empty((times.size + 1, PIECE)) if kept is None else kept
     pieces[:, 0] = np.nan  # of a row without a piece
-    room = pieces[None], np.empty((1, times.size), np.int64), np.empty((1, 2, times.size))
-    panels, how = (fields.edges, fields.rough, fields.at.values), np.array([tolerance, 0.0])
-    how[1] = 0.0 if kept is None else 3.0
+    room = pieces[None], np.empty((1, times.size), np.int64)
+    panels, how = (
+        (fields.edges, fields.rough, fields.at.values),
+        np.array([tolerance, kept is not None], float),
+    )
     motions()(*panels, setup, times, how, most, *TABLES, *buffers(times.size, bad), *room, *outs)
     return Marched(x, speeds, status, numbers, way), bad
 

@@ -12,13 +12,13 @@ from ...mechanism.names import LENGTHS, LOADS
 from ...support.deadline import Deadline
 from ...support.interrupts import stopped_early
 from ..events import NEAR, STANDSTILL, Mark, angles_of, failure, time_of, words_of
+from ..history import Ended, instants_of, result_of
 from ..model import Model
-from ..result import DONE, FAILED, LIMIT, Event
+from ..result import DONE, FAILED, LIMIT, Event, Simulation
 from .many import TOO_WIDE, FollowedMotions, follow_many
-from .one_design import one_design
 from .panels import Designs
 from .path import Path, path_of
-from .serves import served
+from .serves import ENERGY, served
 
 Array = NDArray[np.float64]
 BRIEF = 500.0  # pieces of a motion that stays in the thread of the caller
@@ -67,17 +67,25 @@ class MotionOverAngle(NamedTuple):
 
     def states(self, t: Array) -> tuple[Array, Array]:
         """Angle and speed at instants."""
-        order, plain = np.argsort(t, kind="stable"), self._replace(designs=self.designs._replace(wrt=()))
-        found, theta, omega = plain.found(t[order]), np.empty(t.size), np.empty(t.size)
+        order = np.argsort(t, kind="stable")
+        found, theta, omega = self.found(t[order]), np.empty(t.size), np.empty(t.size)
         theta[order], omega[order] = found.theta[0, : t.size], found.omega[0, : t.size]
         return theta, omega
+
+    def result(self, names: Sequence[str], times: Any, inputs: Mapping[str, Any]) -> Simulation:
+        """The result of the motion; inputs: its own, for `names`."""
+        t = instants_of(times, self.t)
+        found = self.found(t)
+        histories = [history[0, : t.size] for history in (found.theta, found.omega, found.alpha)]
+        _, residual, work, rounded = found.numbers[0].tolist()
+        facts = self.t, self.status, self.message, self.events, ENERGY, self.rtol
+        return result_of(t, histories, Ended(*facts, residual, rounded, work, self.states), names, inputs)
 
     def _followed(self, times: Array) -> FollowedMotions:
         most = np.array([np.inf])
 
         def work() -> FollowedMotions:
-            with one_design():
-                return follow_many(self.designs, times, self.rtol, most)
+            return follow_many(self.designs, times, self.rtol, most)
 
         return _heeded(work, most, Deadline("simulate", None)) if self.long else work()
 
@@ -93,7 +101,7 @@ def motion_of(
     if not served(designs).all() or model.vanishing():
         return None
     t_end = float(times[-1])
-    asked = times[-1:] if until or designs.wrt else times
+    asked = times[-1:] if until else times
     path, found, late = _path(designs, asked, rtol, float(most), deadline)
     if path.status >= TOO_WIDE:
         return None
@@ -152,20 +160,19 @@ def _path(
 ) -> tuple[Path, FollowedMotions, str]:
     """The pieces up to the last instant, and why they end before it if the time is over."""
     brief, several = np.array([min(most, BRIEF)]), np.array([most])
-    with one_design():
-        path, found = path_of(designs, times, rtol, brief)
-        if path.status != FAILED or brief[0] == most:
-            return path, found, ""
-        done: list[tuple[Path, FollowedMotions]] = []
-        late = ""
-        try:
-            _heeded(lambda: done.append(path_of(designs, times, rtol, several)), several, deadline)
-        except TimeoutError:
-            if not done:
-                raise
-            # Stopped on finer panels it may have begun again.
-            done[0] = max((path, found), done[0], key=lambda each: len(each[0].pieces))
-            late = f"not done within timeout = {deadline.seconds:g} s, after {len(done[0][0].pieces)} steps"
+    path, found = path_of(designs, times, rtol, brief)
+    if path.status != FAILED or brief[0] == most:
+        return path, found, ""
+    done: list[tuple[Path, FollowedMotions]] = []
+    late = ""
+    try:
+        _heeded(lambda: done.append(path_of(designs, times, rtol, several)), several, deadline)
+    except TimeoutError:
+        if not done:
+            raise
+        # Stopped on finer panels it may have begun again.
+        done[0] = max((path, found), done[0], key=lambda each: len(each[0].pieces))
+        late = f"not done within timeout = {deadline.seconds:g} s, after {len(done[0][0].pieces)} steps"
     return (*done[0], late)
 
 

@@ -13,16 +13,13 @@ from ...loads.load import Load, OverTheta, OverY
 from ...mechanism.closed import TURN
 from ...mechanism.names import LENGTHS
 from ...support.panels import NODE, NODES, nodes_of, padded
-from .loops.compiled import names_of
-from .one_design import is_one_design
 
 Array = NDArray[np.float64]
 LOST = 2.0**-53  # of an angle: its rounding, in the last terms of a series
 SAME = 1e-12  # rad: edges that are no farther apart are one
-STARTS = ("theta0", "omega_start", "torque")  # parameters that are no inputs of the mechanism
 MOST_TURNS = 4  # after which loads must repeat
 FIRST = 1.65  # times 1/tolerance^(1/16): panels of a turn, or between limit angles, that most designs need
-# All from one kernel: few compilations.
+FIELDS, SLIDER = ("M_eff", "T_in"), ("Y", "Y_wrt_theta")  # at nodes; of a load that varies
 QUANTITIES = ("M_eff", "T_in", "M_eff_wrt_theta", "Y", "potential_energy")
 
 
@@ -32,7 +29,6 @@ class Designs(NamedTuple):
     torque, force  on crank and slider: arrays, or tables
     middle, half   of the arc between limit angles; half is 0 where the crank turns fully, middle NaN where no
                    inertia grows there
-    wrt            the parameters of derivatives
     """
 
     inputs: Mapping[str, Any]
@@ -43,14 +39,13 @@ class Designs(NamedTuple):
     omega_start: Array
     middle: Array
     half: Array
-    wrt: tuple[str, ...] = ()
 
     def some(self, rows: Any) -> "Designs":
         """The designs of some rows."""
         inputs = {name: v if isinstance(v, float) else v[rows] for name, v in self.inputs.items()}
         torque, force = (v if isinstance(v, Load) else v[rows] for v in (self.torque, self.force))
         theta0, omega_start, middle, half = (column[rows] for column in self[4:8])
-        return Designs(inputs, self.branch, torque, force, theta0, omega_start, middle, half, self.wrt)
+        return Designs(inputs, self.branch, torque, force, theta0, omega_start, middle, half)
 
     @property
     def tables(self) -> dict[str, Load]:
@@ -97,9 +92,9 @@ class Designs(NamedTuple):
         x      coordinates behind the start; those of nodes are filled in; angles take their places
         more   so many empty rows at the end
         """
-        wrt = tuple(p for p in self.wrt if p not in STARTS) if self.wrt else None
         loaded = isinstance(self.force, Load)
-        names = names_of(loaded, wrt)[edges is None]
+        names = QUANTITIES if edges is None else FIELDS
+        names = (*names, *(name for name in SLIDER if loaded and name not in names))
         slope, values = np.empty(x.shape), np.empty((len(x), len(names) + more, x.shape[1]))
         if edges is not None:
             x[:, 1:] = nodes_of(edges[:, :-1], edges[:, 1:]).reshape(len(x), -1)
@@ -119,19 +114,11 @@ class Designs(NamedTuple):
         return np.broadcast_to(self.inputs[name], self.theta0.shape)
 
     def values(self, theta: Array, names: Sequence[str] = ()) -> dict[str, Array]:
-        """The quantities of the designs at rest, each at angles of its own, which are two or more.
-
-        Always by the same kernel: no digit hangs on the other designs.
-        """
+        """The quantities of the designs at rest, each at angles of its own."""
         inputs = {name: v if isinstance(v, float) else v[:, None] for name, v in self.inputs.items()}
-        # of one row its inputs would be numbers of another kernel
-        if len(theta) == 1 and not is_one_design():
-            inputs = {n: v if isinstance(v, float) else np.repeat(v, 2, axis=0) for n, v in inputs.items()}
-            theta = np.repeat(theta, 2, axis=0)
         state: dict[str, Any] = {"theta": theta, "omega": 0.0, "alpha": 0.0, **inputs}
         known = [*QUANTITIES, "Y_wrt_theta"] if isinstance(self.force, Load) else list(QUANTITIES)
-        found = evaluate(list(names) or known, branch=self.branch, threads=1, **state)
-        return {name: values[: len(self.theta0)] for name, values in found.items()}
+        return dict(evaluate(list(names) or known, branch=self.branch, threads=1, **state))
 
     def place(self, x: Array) -> tuple[Array, Any]:
         """Crank angles and their derivatives by the coordinate (see `coordinate`)."""
@@ -175,7 +162,6 @@ class Fields(NamedTuple):
     theta   the angles
     at      quantities there, the first two of the coordinate
     back    the row of the torque on the way back
-    more    the first row that is free
     """
 
     edges: Array
@@ -183,7 +169,6 @@ class Fields(NamedTuple):
     theta: Array
     at: AtPlaces
     back: int
-    more: int
 
     @property
     def inertia(self) -> Array:
@@ -197,19 +182,18 @@ class Fields(NamedTuple):
 
 
 def fields_of(designs: Designs, edges: Array) -> Fields:
-    """The fields of designs on panels, and of derivatives by the angle, of which some become others."""
+    """The fields of designs on panels."""
     count, panels = len(edges), edges.shape[1] - 1
     theta = np.empty((count, 1 + NODES * panels))
     loaded = isinstance(designs.force, Load)
-    free = len(designs.wrt) * loaded + ("torque" in designs.wrt)
-    at = designs.at_angles(theta, edges, loaded + free)
+    at = designs.at_angles(theta, edges, int(loaded))
     values, slope, known = at.values, at.slope, at.known
-    rough, more = np.zeros((count, panels)), len(at.names)
+    rough, back = np.zeros((count, panels)), len(at.names) if loaded else 1
     if designs.half.any():
         rough = _rough(designs, edges)
     if loaded:
-        values[:, more] = values[:, 1]
-        for row, way in ((1, 1.0), (more, -1.0)):
+        values[:, back] = values[:, 1]
+        for row, way in ((1, 1.0), (back, -1.0)):
             own = np.zeros(theta.shape)
             designs.add_tables(own, theta, known["Y"], known["Y_wrt_theta"], way)
             values[:, row] += own * slope
@@ -217,7 +201,7 @@ def fields_of(designs: Designs, edges: Array) -> Fields:
         own = np.zeros(theta.shape)
         designs.add_tables(own, theta, theta, theta, 1.0)
         values[:, 1] += own * slope
-    return Fields(edges, rough, theta, at, more if loaded else 1, more + loaded)
+    return Fields(edges, rough, theta, at, back)
 
 
 def _rough(designs: Designs, edges: Array) -> Array:

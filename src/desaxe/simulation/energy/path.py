@@ -14,7 +14,7 @@ from .panels import Designs
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
-COLUMNS = 43  # of a piece, with the part of its panel: see `follow`
+COLUMNS = 27  # of a piece, with the part of its panel: see `follow`
 ROOM, MORE_ROOM, FULL = (
     512,
     8,
@@ -115,7 +115,7 @@ def path_of(designs: Designs, times: Array, rtol: float, most: Array) -> tuple[P
     room, largest = ROOM, int(most[0]) + 1
     while True:
         kept = np.empty((min(room, largest), COLUMNS))
-        found = follow_many(designs._replace(wrt=()), times, rtol, most, kept)
+        found = follow_many(designs, times, rtol, most, kept)
         if found.status[0] != FULL:
             break
         if not most[0]:  # stopped before there was more room

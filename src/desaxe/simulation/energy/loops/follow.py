@@ -14,13 +14,12 @@ method. A piece whose series has not ended is cut.
 rough    how exactly M and Q are known on each panel, as a share of them
 setup    a row per design: E0, number of the edge at the start, way (-1 or 1), period or 0, 1 where Q does
          not depend on the way, the row of Q back
-how      tolerance; 1 to keep all that happens, 2 with the series of every piece, 3 with every turn and swing
+how      tolerance; 1 to keep every piece, else 0: those of instants, and whole turns pass by at once
 most     pieces: an array of one, which another thread may set to 0
 tables   nodes; weights; columns by which values become Legendre coefficients, running integrals, and means
          of 2 s f(s) from 0 to xi
 kept     pieces: start, duration, x as c0 + c1 u + c2 u^2, kind, panel counted over turns, way, and the
-         coefficients of dt/du; where there is room, the part of the panel
-         (start, length, what lies beyond) and dt/du at the nodes; or whole turns or swings: see `pass_by`
+         coefficients of dt/du; where there is room, the part of the panel (start, length, what lies beyond)
 numbers  end, x and energy there, instants reached, pieces kept, pieces
 """
 
@@ -74,11 +73,6 @@ def keep(
     place = a + (0.5 if kind == 0 else 0.0 if kind == 1 else 1.0) * span
     piece[0], piece[1], piece[2] = start, duration, middle + half * place + bend
     piece[3], piece[4], piece[5] = 0.5 * half * span, bend, kind
-
-
-def pass_by(row: Any, count: float, energy: float, kind: float, panel: float, way: float) -> None:
-    """Whole turns (kind 3) from a panel on with some energy, or swings (kind 4): their number."""
-    row[0], row[1], row[5], row[6], row[7] = count, energy, kind, panel, way
 
 
 def too_wide(known: Any, bad: Any) -> bool:
@@ -136,22 +130,16 @@ def follow(
         side = int64(0) if way > 0.0 else int64(1)
         if period != 0.0 and panel == (int64(0) if way > 0.0 else panels - 1):
             if smooth:
-                passed, turns, gain, looked, deepest = turns_before(
+                passed, turns, gain, looked = turns_before(
                     times[row] - t, edges, M, work[side], energy, way, 1e-15 * largest,
                     0.5 * tolerance, (most[0] - pieces) / panels, tables, rows,
                 )  # fmt: skip
                 pieces += int64(looked) * panels
-                if how[1] > 0.0 and turns > 0.0:
-                    if stored >= len(kept):
-                        return 12
-                    pass_by(kept[stored], turns, energy, 3.0, panel + panels * turn, way)
-                    kept[stored, 2], kept[stored, 3] = gain, deepest
-                    stored += 1
                 t, turn, energy = t + passed, turn + way * turns, energy + turns * gain
                 largest = max(largest, energy)
-            elif how[1] != 3.0 and times[count - 1] - t > MANY * (t - began) and too_wide(known[side], bad):
+            elif how[1] == 0.0 and times[count - 1] - t > MANY * (t - began) and too_wide(known[side], bad):
                 return 10
-            smooth, began = how[1] != 3.0, t
+            smooth, began = how[1] == 0.0, t
         half = 0.5 * (edges[panel + 1] - edges[panel])
         if half <= 0.0:
             panel += 1 if way > 0.0 else -1
@@ -260,12 +248,9 @@ def follow(
                     return 12
                 keep(kept[stored], start, duration, a, span, kind, half, middle)
                 kept[stored, 6], kept[stored, 7] = panel + panels * turn, way
-                if how[1] != 1.0 or kind != 0 or times[row] <= t:
-                    combined(rows[0], tables[2], kept[stored, 8:])
+                combined(rows[0], tables[2], kept[stored, 8:])
                 if kept.shape[1] > 24:
                     kept[stored, 24], kept[stored, 25], kept[stored, 26] = a, span, over
-                    for k in range(16):
-                        kept[stored, 27 + k] = rows[0, k]
                 while row < count and times[row] <= t:
                     which[row], since[row] = stored, times[row] - start
                     row += 1
@@ -281,14 +266,8 @@ def follow(
         rest, inside = stopped, stopped
         if stopped:
             swing, last_stop = t - last_stop, t
-            if setup[4] > 0.0 and how[1] != 3.0 and swing > 0.0:
-                swings = 2.0 * max(floor((times[row] - t) / (2.0 * swing)), 0.0)
-                if how[1] > 0.0 and swings > 0.0:
-                    if stored >= len(kept):
-                        return 12
-                    pass_by(kept[stored], swings, 0.0, 4.0, 0.0, way)
-                    stored += 1
-                last_stop += swings * swing
+            if setup[4] > 0.0 and how[1] == 0.0 and swing > 0.0:
+                last_stop += 2.0 * max(floor((times[row] - t) / (2.0 * swing)), 0.0) * swing
                 t = last_stop
             way, energy = -way, 0.0
         else:
@@ -316,7 +295,6 @@ def motions(
     known: Any,
     kept: Any,
     which: Any,
-    where: Any,
     x: Any,
     speed: Any,
     status: Any,
@@ -327,7 +305,6 @@ def motions(
 
     x, speed      their first column, of the start, is left alone
     kept, which   pieces, and those of the instants: of each design, or room for one
-    where         u of the instants, and dt/du there
     lanes, work, known   buffers: 22 rows of instants, 2 x panels x 17, 2 x panels
     """
     tables, count = (nodes, weights, coefficients, running, mean, blocks), len(times)
@@ -348,7 +325,5 @@ def motions(
         reached = int64(numbers[n, 3])
         if status[n] < 10 and reached > 0 and not invert(reached, own, since, pieces, place, rate, lanes):
             status[n] = 11
-        for i in range(reached):
-            where[room, 0, i], where[room, 1, i] = lanes[16, i], lanes[18, i]
         if status[n] == 0:
             numbers[n, 2] = last[16] + last[17] * integral(last, (place[count - 1] - last[18]) / last[17])

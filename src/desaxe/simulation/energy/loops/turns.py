@@ -65,11 +65,8 @@ def turns_before(
     until: float, edges: Any, M: Any, work: Any, energy: float, way: float, noise: float, tolerance: float,
     most: float, tables: Any, rows: Any,
 ) -> Any:  # fmt: skip
-    """The turns that end before a time from now: their time, number and gain, and how many were looked at.
-
-    Last by how much the lowest energy in a turn differs from that at its start.
-    """
-    t, turns, gain, looked, deepest = 0.0, 0.0, 0.0, 0.0, 0.0
+    """The turns that end before a time from now: their time, number and gain, and how many were looked at."""
+    t, turns, gain, looked = 0.0, 0.0, 0.0, 0.0
     for panel in range(len(edges) - 1):
         gain += way * work[panel, 16] if edges[panel + 1] > edges[panel] else 0.0
     while looked + 9.0 <= most:
@@ -79,7 +76,6 @@ def turns_before(
         if not (least > 0.0 and t + time < until):
             break
         size = in_block(floor((FASTER if gain >= 0.0 else SLOWER) * (until - t) / time), least, gain)
-        deepest = least - start
         if size > 1.0:
             time = 0.0
             for j in range(tables[5].shape[1]):
@@ -92,4 +88,4 @@ def turns_before(
             if not time < inf:
                 break
         t, turns = t + time, turns + size
-    return t, turns, gain, looked, deepest
+    return t, turns, gain, looked
