@@ -242,7 +242,7 @@ class MotionSlopes:
         q, v, _ = self.motion.at(t.reshape(-1))[1]
         return t, q.reshape(t.shape), v.reshape(t.shape)
 
-    def _local(self, piece: Array, start: Array, h: Array) -> Array:
+    def _local(self, piece: NDArray[np.intp], start: Array, h: Array) -> Array:
         """The series on panels for the starts (1, 0) and (0, 1) and for each parameter."""
         laws = [self.pieces[k].law for k in piece.tolist()]
         signs = np.array([[law.direction * law.side, law.pressed] for law in laws]).reshape(-1, 2)
