@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
 from ..mechanism.inputs import INPUTS, SAFE, Input, is_good, limit_of
-from ..mechanism.load_lines import NEAR_JUMP
 from ..mechanism.messages import amount, named
 from ..mechanism.read import read_array
 from ..runtime.kernels import KernelKey, key_of, tells_unsafe
@@ -19,6 +18,7 @@ from ..runtime.threads import run_in_blocks
 from ..support.memory import require
 from ..support.shown import shown
 from .call_cache import planned
+from .under_loads.request import LoadInputs, numeric
 
 Array = NDArray[Any]
 
@@ -34,24 +34,45 @@ class Loops(NamedTuple):
     columns: dict[str, Array]
     axis_of: dict[str, int]
 
+    def taken_by(self, wanted: Request) -> "Loops":
+        """The loops with the columns that a request takes; a force may vary where nothing else does."""
+        columns = {name: column for name, column in self.columns.items() if name in wanted.inputs}
+        return (
+            self
+            if len(columns) == len(self.columns)
+            else self._replace(columns=columns, axis_of={n: self.axis_of[n] for n in columns})
+        )
+
 
 def evaluate_arrays(
-    wanted: Request, given: Mapping[str, Any], threads: int | None, out: Any
+    wanted: Request,
+    inputs: Sequence[str],
+    given: Mapping[str, Any],
+    threads: int | None,
+    out: Any,
+    loads: LoadInputs | None = None,
 ) -> dict[str, Array]:
-    """The values by requested name, in the broadcast shape."""
-    if out is None or type(out) is dict:
-        ready = planned(wanted, given, out, threads)
+    """The values by requested name, in the broadcast shape.
+
+    inputs   those that are numbers or arrays of the caller; others follow from `loads`
+    """
+    tables: dict[str, Any] = {}
+    functions: dict[str, Any] = {}
+    if loads is not None:
+        tables = loads.tables()
+        functions = loads.at(numeric("theta", given["theta"], wanted.shown)) if loads.functions else {}
+    if (out is None or type(out) is dict) and (loads is None or "theta" in wanted.inputs):
+        ready = planned(wanted, {**given, **functions} if functions else given, out, threads, tables)
         if ready is not None:
             return ready
-    inputs = wanted.inputs
     refuse_other_labels({name: given.get(name) for name in inputs})
     arrays = {name: as_array(name, given.get(name), inputs, wanted.shown) for name in inputs}
     shape = broadcast_shape(arrays)
     places = outputs_for(wanted.shown, shape, out)
     buffers = places if out is None else scratch_for(places, arrays.values())
     if all(buffer.size for buffer in buffers.values()):
-        scalars, loops = loops_of(arrays, shape)
-        fill(wanted, scalars, loops, list(buffers.values()), threads)
+        scalars, loops = loops_of(arrays | {n: np.asarray(f) for n, f in functions.items()}, shape)
+        fill(wanted, {**scalars, **tables}, loops, list(buffers.values()), threads)
     return copied_back(places, buffers, out is None)
 
 
@@ -152,8 +173,8 @@ def outputs_for(names: Sequence[str], shape: tuple[int, ...], out: Any) -> dict[
 
 
 def dtype_of(name: str) -> np.dtype[Any]:
-    """The dtype of an output: int8 for a status and for flags, else float64."""
-    return STATUS if name in ("status", NEAR_JUMP) else FLOAT
+    """The dtype of an output: int8 for a status, else float64."""
+    return STATUS if name == "status" else FLOAT
 
 
 def scratch_for(places: Mapping[str, Array], inputs: Collection[Array]) -> dict[str, Array]:
@@ -210,7 +231,7 @@ def _fill(
     key: KernelKey | None = None,
 ) -> bool:
     """Compute all points; True if the kernel looks for inputs that are beyond their range and finds none."""
-    sizes, columns, axis_of = loops
+    sizes, columns, axis_of = loops.taken_by(wanted)
     asked = wanted, scalars, columns, axis_of, len(sizes)
     hopeful = False
     if key is None:

@@ -14,7 +14,7 @@ from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LENGTHS, STATUS
 from ..mechanism.own import Register, register, used_by
 from ..mechanism.program import Variant, program_of
-from ..runtime.request import Request, check_common, several, standstill
+from ..runtime.request import check_common, several, standstill
 from ..support.forks import IMPORTS
 from .arrays import as_array
 
@@ -119,9 +119,8 @@ def _axis(name: str, value: Any, names: Sequence[str]) -> Array:
     return array
 
 
-def require_inputs(wanted: Request, axes: Container[str]) -> None:
+def require_inputs(names: Sequence[str], inputs: Sequence[str], axes: Container[str]) -> None:
     """Raise TypeError for an input that is needed and not given."""
-    missing = [name for name in wanted.inputs if name not in axes]
+    missing = [name for name in inputs if name not in axes]
     if missing:
-        needed = ", ".join(wanted.inputs)
-        raise TypeError(f"{', '.join(wanted.shown)}: {missing[0]} is missing (needed: {needed})")
+        raise TypeError(f"{', '.join(names)}: {missing[0]} is missing (needed: {', '.join(inputs)})")

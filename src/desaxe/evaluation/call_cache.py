@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.inputs import SAFE, is_good
-from ..mechanism.load_lines import NEAR_JUMP
 from ..mechanism.names import LENGTHS
 from ..runtime.executor import CompiledKernel, is_ready, kernel_for, words
 from ..runtime.kernels import key_of, of_numbers
@@ -225,7 +224,7 @@ def _new_plan(
     if key.far or "theta" in scalars or not is_ready(key):
         return None
     kernel = kernel_for(key)
-    results = tuple((name, STATUS if name in ("status", NEAR_JUMP) else FLOAT) for name in wanted.shown)
+    results = tuple((name, STATUS if name == "status" else FLOAT) for name in wanted.shown)
     steps = [8] * len(kernel.arguments) + [kind.itemsize for _, kind in results]
     pack = struct.Struct(f"{len(steps) + 2 * len(kernel.given)}q").pack
     plan = call.plans[kinds] = _Plan(kernel, pack, words(steps), results, [])

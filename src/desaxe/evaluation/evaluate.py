@@ -8,7 +8,7 @@ from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LOADS
 from ..support.answer import Answer
 from ..support.forks import IMPORTS
-from .values import of_any_arrays, values
+from .values import values
 
 STEADY = 0.0  # the default of alpha; an alpha of 0 in a call is another object
 
@@ -104,7 +104,7 @@ def evaluate(
             from .quality import evaluate_quality
 
         return evaluate_quality(names, given, branch, accuracy, threads, out)
-    found = values_of(names, given, branch, accuracy, threads, out, of_any_arrays)
+    found = values_of(names, given, branch, accuracy, threads, out)
     if type(found) is dict:
         found = Values(found)
         found.inputs = {n: value for n, value in given.items() if value is not None and value is not STEADY}

@@ -16,7 +16,6 @@ from .plan import plan_of
 from .points import points_of
 from .reductions.argument import names_reduced, reductions_of
 from .under_loads.loaded import evaluate_loaded
-from .values import of_labelled_arrays, values
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -99,12 +98,7 @@ def grid(
         check_inputs("grid", inputs, ARGUMENTS)
 
         def each(own: list[str], given: dict[str, Any]) -> dict[str, Any]:
-            loaded = any(map(callable, given.values()))
-            found: dict[str, Any] = (
-                evaluate_loaded(own, given, branch, accuracy, threads)
-                if loaded
-                else values(own, given, branch, accuracy, threads, None, of_labelled_arrays)
-            )
+            found: dict[str, Any] = evaluate_loaded(own, given, branch, accuracy, threads)
             return found
 
         return grid_by_index(each, wanted, inputs, branch, accuracy)

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from ..mechanism.own import Definition, using
 from ..runtime.kernels import KernelKey, key_of
-from ..runtime.request import Request, request
+from ..runtime.request import Request
 from .arrays import Loops, copied_back, dtype_of, fill, outputs_for, scratch_for
 from .axes import Outer, require_inputs
 from .labels import Output, attributes
-from .under_loads.columns import MOTION, plan_at, require_angle, totals_at
-from .under_loads.request import UnderLoads, made_by, under_loads
+from .under_loads.loaded import evaluate_loaded
+from .under_loads.request import LoadInputs, request_of
 
 Array = NDArray[Any]
 
@@ -27,34 +27,31 @@ class Points(NamedTuple):
     """The values of names over some dimensions; without arrays, so that it pickles small.
 
     dims     the dimensions of the outputs, in their order
-    wanted   what the kernel gives, in the order of its outputs: the names, and their slopes by loads
+    wanted   the request
+    inputs   those that are numbers here, or dimensions
     numbers  the inputs that are numbers here
     key      the kernel of all blocks
     branch   the assembly
-    loads    the names under loads that vary with the motion; derivatives are total ones then
+    loads    the inputs that follow from loads which vary with the motion; derivatives are total ones then
     """
 
     dims: tuple[str, ...]
     wanted: Request
+    inputs: tuple[str, ...]
     numbers: tuple[tuple[str, float], ...]
     key: KernelKey
     branch: int
-    loads: UnderLoads | None = None
+    loads: LoadInputs | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
         """The names, as the user says them."""
-        return self.wanted.shown if self.loads is None else self.loads.plan.shown
+        return self.wanted.shown
 
     @property
     def axes(self) -> tuple[str, ...]:
         """The dimensions whose values the step needs."""
         return self.dims
-
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        """The inputs of the kernel, and those that its loads depend on."""
-        return self.wanted.inputs if self.loads is None else self.loads.inputs
 
     @property
     def own(self) -> tuple[Definition, ...]:
@@ -70,7 +67,7 @@ class Points(NamedTuple):
     @property
     def identity(self) -> str:
         """A text that tells the step from all others, by what its loads are too."""
-        loads = () if self.loads is None else self.loads.plan.loads.values()
+        loads = () if self.loads is None else self.loads.loads.values()
         return " ".join([repr(self), *(load.identity for load in loads)])
 
     def compute(
@@ -87,21 +84,24 @@ class Points(NamedTuple):
     def at(self, points: Mapping[str, Array]) -> dict[str, Array]:
         """The values under loads at points, whose inputs are columns of one length."""
         assert self.loads is not None
-        numbers = {**dict(self.numbers), **points}
-        given = {**dict.fromkeys(MOTION), **numbers}
+        given = {**dict(self.numbers), **points, **self.loads.loads}
         with using(self.own):
-            return totals_at(self.loads.plan, given, numbers, self.branch, self.wanted.accuracy, 1)
+            found: dict[str, Array] = evaluate_loaded(self.names, given, self.branch, self.wanted.accuracy, 1)
+        return found
 
     def _fill(self, values: Mapping[str, Array], outs: Sequence[Array], threads: int | None) -> None:
         """Fill outputs of a block."""
         columns = {name: np.ascontiguousarray(values[name]) for name in self.dims if name in self.inputs}
-        scalars = {name: value for name, value in self.numbers if name in self.inputs}
-        places = {name: self.dims.index(name) for name in columns}
-        loops = Loops(tuple(values[name].size for name in self.dims) or (1,), columns, places)
-        if self.loads is None:
-            fill(self.wanted, scalars, loops, outs, threads, self.key)
-        else:
-            self.loads.fill(scalars, loops, outs, threads, self.key)
+        scalars: dict[str, Any] = dict(self.numbers)
+        axes = {name: self.dims.index(name) for name in columns}
+        if self.loads is not None:
+            scalars |= self.loads.tables()
+            (columns if "theta" in columns else scalars).update(
+                self.loads.at(columns["theta"] if "theta" in columns else scalars["theta"])
+            )
+            axes |= {name: axes["theta"] for name in self.loads.functions if name in columns}
+        loops = Loops(tuple(values[name].size for name in self.dims) or (1,), columns, axes)
+        fill(self.wanted, scalars, loops, outs, threads, self.key)
 
 
 def points_of(
@@ -112,22 +112,17 @@ def points_of(
     accuracy: Any,
 ) -> Points:
     """The step of names over dimensions of a grid, checked; TypeError for what is missing."""
-    given, axes = outer.given, outer.axes
-    plan = plan_at(names, outer.loads, axes) if outer.loads else None
-    if plan is None or not plan.loads:
-        wanted = request(names, given, branch, accuracy)
-        require_inputs(wanted, {*axes, *outer.loads})
-        scalars, loops = _arguments(wanted.inputs, outer, along)
-        key = key_of(wanted, scalars, loops.columns, loops.axis_of, len(loops.sizes))
-        return Points(tuple(along), wanted, tuple(scalars.items()), key, int(branch))
-    require_angle(plan, axes)
-    loads = under_loads(plan, given, branch, accuracy)
-    missing = loads.wanted._replace(shown=plan.shown)
-    require_inputs(missing, {*axes, *made_by(plan.loads)})
-    scalars, loops = _arguments(loads.inputs, outer, along)
-    return Points(
-        tuple(along), loads.wanted, tuple(scalars.items()), loads.key(scalars, loops), int(branch), loads
-    )
+    axes = outer.axes
+    wanted, inputs, loads = request_of(names, outer.given, outer.loads, branch, accuracy)
+    require_inputs(names, inputs, axes)
+    scalars, loops = _arguments(inputs, outer, along)
+    columns, axis_of = loops.columns, loops.axis_of
+    if loads is not None and "theta" in columns:  # the values of functions are along it
+        columns = columns | dict.fromkeys(loads.functions, columns["theta"])
+        axis_of = axis_of | dict.fromkeys(loads.functions, axis_of["theta"])
+    taken = loops._replace(columns=columns, axis_of=axis_of).taken_by(wanted)
+    key = key_of(wanted, scalars, taken.columns, taken.axis_of, len(taken.sizes))
+    return Points(tuple(along), wanted, tuple(inputs), tuple(scalars.items()), key, int(branch), loads)
 
 
 def _arguments(names: Sequence[str], outer: Outer, along: Sequence[str]) -> tuple[dict[str, float], Loops]:

@@ -16,7 +16,7 @@ from ..mechanism.catalogue import quantity
 from ..mechanism.names import LENGTHS, parts, sensitivity
 from ..runtime.request import BOUNDS, accuracy_of, check_common, request, several
 from .arrays import as_array, broadcast_shape, refuse_other_labels
-from .values import of_any_arrays, values
+from .values import values
 
 Array = NDArray[np.float64]
 
@@ -69,8 +69,7 @@ def _quality(name: str, given: Mapping[str, Any], rest: Mapping[str, Any]) -> Qu
     refuse_other_labels({p: given.get(p) for p in needs})
     slopes = _slope_names(name, needs, given.get("omega") is not None)
     gap = ["margin"] if name != "margin" and set(LENGTHS) <= set(needs) else []
-    every, rest = [name, *slopes.values(), *gap], {**rest, "of_arrays": of_any_arrays}
-    found = values(every, dict(given), **rest)
+    found = values([name, *slopes.values(), *gap], dict(given), **rest)
     arrays = {p: as_array(p, given.get(p), needs, (name,)) for p in needs}
     by = {p: np.asarray(found[slope]) for p, slope in slopes.items()}
     if name == "margin":

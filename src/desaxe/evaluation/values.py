@@ -5,7 +5,7 @@ A single point stays in this file and needs only `math`; as soon as an input is 
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..mechanism.inputs import SAFE, is_good
 from ..mechanism.own import register
@@ -23,6 +23,9 @@ from ..runtime.request import (
 from ..support.forks import IMPORTS
 from ..support.interrupts import import_whole
 
+if TYPE_CHECKING:
+    from .under_loads.request import LoadInputs
+
 
 def values(
     names: str | Sequence[str],
@@ -31,12 +34,8 @@ def values(
     accuracy: Any = "standard",
     threads: int | None = None,
     out: Any = None,
-    of_arrays: Callable[..., dict[str, Any]] | None = None,
 ) -> Any:
-    """The value of one name, or a dict name -> value; see `evaluate`. Inputs that are None are not given.
-
-    of_arrays   what answers for arrays: without, those that broadcast by position; `of_any_arrays` for others
-    """
+    """The value of one name, or a dict name -> value; see `evaluate`. Inputs that are None are not given."""
     wanted = (names,) if isinstance(names, str) else several(names)
     omega, speed_given = given.get("omega"), given.get("omega0") is not None
     if threads is not None or (omega is not None and speed_given) or type(branch) is not int:
@@ -55,22 +54,42 @@ def values(
         asked = request(wanted, given, branch, accuracy, now)
         _KNOWN[key] = known = asked, point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
     asked, point = known
+    answer = answer_of(asked, point, point.inputs, given, threads, out)
+    if type(answer) is tuple:
+        return answer[0] if isinstance(names, str) else dict(zip(wanted, answer, strict=True))
+    return answer[names] if isinstance(names, str) else answer
+
+
+def answer_of(
+    asked: Request,
+    point: PointFunction,
+    inputs: Sequence[str],
+    given: Mapping[str, Any],
+    threads: int | None,
+    out: Any,
+    loads: "LoadInputs | None" = None,
+) -> Any:
+    """The values of a request: a tuple at a point, a dict by name over arrays.
+
+    inputs   those that are numbers or arrays of the caller
+    loads    those that follow from loads which vary with the motion
+    """
     numbers = []
-    for name in point.inputs:
-        value = given[name]
+    for name in inputs:
+        value = given.get(name)
         if type(value) is not float or not LEAST < value < MOST:
             if type(value) is _ARRAY[0]:
                 value = None
             elif type(value) is not float or not is_good(name, value):
-                value = as_number(name, value, point.inputs, wanted)
+                value = as_number(name, value, inputs, asked.shown)
             if value is None:  # not a number: an array
-                answers = (of_arrays or _of_arrays)(asked, point.inputs, given, threads, out)
-                return answers[names] if isinstance(names, str) else answers
+                return _of_arrays(asked, inputs, given, threads, out, loads)
         numbers.append(value)
     if out is not None:
         raise TypeError("out= is for arrays, but every input is a number")
-    answer = point.function(*numbers)
-    return answer[0] if isinstance(names, str) else dict(zip(wanted, answer, strict=True))
+    if loads is None:
+        return point.function(*numbers)
+    return point.run(loads.at_point(dict(zip(inputs, numbers, strict=True))))
 
 
 LEAST, MOST = SAFE
@@ -92,29 +111,14 @@ def _evaluate_arrays() -> Callable[..., dict[str, Any]]:
 
 
 def _of_arrays(
-    asked: Request, inputs: Sequence[str], given: Mapping[str, Any], threads: int | None, out: Any
+    asked: Request,
+    inputs: Sequence[str],
+    given: Mapping[str, Any],
+    threads: int | None,
+    out: Any,
+    loads: "LoadInputs | None",
 ) -> dict[str, Any]:
-    """The values for arrays, which broadcast by position."""
-    return _evaluate_arrays()(asked, given, threads, out)
-
-
-def of_labelled_arrays(
-    asked: Request, inputs: Sequence[str], given: Mapping[str, Any], threads: int | None, out: Any
-) -> dict[str, Any]:
-    """The values for arrays of which some are labelled: these broadcast by their dimensions."""
-    with IMPORTS:
-        from .labelled import evaluate_labelled
-
-    def run(plain: dict[str, Any]) -> dict[str, Any]:
-        return _of_arrays(asked, inputs, plain, threads, out)
-
-    return evaluate_labelled(run, asked.shown, {name: given.get(name) for name in inputs})
-
-
-def of_any_arrays(
-    asked: Request, inputs: Sequence[str], given: Mapping[str, Any], threads: int | None, out: Any
-) -> dict[str, Any]:
-    """The values for arrays of any kind: labelled ones by their dimensions."""
+    """The values for arrays: labelled ones broadcast by their dimensions, others by position."""
     evaluate_arrays = _evaluate_arrays()
     for name in inputs:
         value = given.get(name)
@@ -127,7 +131,7 @@ def of_any_arrays(
                 from .labelled import evaluate_labelled
 
             def run(plain: dict[str, Any]) -> dict[str, Any]:
-                return of_any_arrays(asked, inputs, plain, threads, None)
+                return _of_arrays(asked, inputs, plain, threads, None, loads)
 
             return evaluate_labelled(run, asked.shown, {name: given.get(name) for name in inputs})
-    return evaluate_arrays(asked, given, threads, out)
+    return evaluate_arrays(asked, inputs, given, threads, out, loads)

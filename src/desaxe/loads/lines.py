@@ -10,7 +10,7 @@ def line_of(name: str, load: Load) -> LoadLines:
     if isinstance(load, TableOverTheta):
         return LoadLines(name, "theta", load.period, load.table.knots[0])
     if isinstance(load, OverY):
-        return LoadLines(name, load.centre or "Y", ways=load.inward is not None, jumps=load.jumping)
+        return LoadLines(name, load.centre or "Y", ways=load.inward is not None)
     return LoadLines(name, "")
 
 

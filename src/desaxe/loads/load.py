@@ -13,7 +13,6 @@ from math import ceil, floor, inf, nan
 from typing import TYPE_CHECKING, Any
 
 from ..mechanism.closed import TURN
-from ..mechanism.load_lines import edge_rows
 from ..support.computed import computed_once
 from ..support.forks import IMPORTS
 from .table import Arrays, Table, arrays_of, polynomial
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
     from ..units.system import Conversion
 
 MOST_RANGES = 16  # of angles, of which a table remembers the nodes
-ARRAYS = ("_arrays", "columns", "edge_rows")  # that are computed once
+ARRAYS = ("_arrays", "columns", "lists")  # that are computed once
 POSITION = ("Y", "Y_wrt_theta", "Y_wrt_theta_theta")  # which piece holds: the position, and the way
 
 
@@ -66,12 +65,17 @@ class Load(ABC):
         raise TypeError(f"{self!r} is no table")
 
     @computed_once
+    def lists(self) -> Arrays:
+        """The arrays of a table, made once."""
+        return self.arrays()
+
+    @computed_once
     def columns(self) -> tuple[Any, Any]:
         """The knots and the coefficients of a table, as arrays that kernels take."""
         with IMPORTS:
             import numpy as np
 
-        knots, rows = self.arrays()
+        knots, rows = self.lists
         return np.array(knots), np.array(rows)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -298,32 +302,16 @@ class OverY(Load):
             value, slope = polynomial(rows.take(piece, axis=1), distance)
         return value, slope
 
-    def edges(self, Y: Any) -> Any:
-        """The ends of the pieces of one way, the first and last infinite, as positions are: one or many."""
-        return self._edges if isinstance(Y, float) else self._arrays[0]
-
-    @computed_once
-    def _edges(self) -> tuple[float, ...]:
-        return -inf, *self.outward.knots, inf
-
     @computed_once
     def _arrays(self) -> tuple[Any, Any, Any]:
         """The ends of the pieces of one way, and the origin and the coefficients of every piece."""
         with IMPORTS:
             import numpy as np
 
-        edges = np.array(self._edges)
+        edges = np.array([-inf, *self.outward.knots, inf])
         origins = np.concatenate([edges[1:2], edges[1:-1]])
         rows = [row for table in self.tables for row in table.rows]
         return edges, np.tile(origins, len(self.tables)), np.array(rows).T
-
-    @computed_once
-    def edge_rows(self) -> Any:
-        """The coefficients of the table of distances from knots, for both ways."""
-        with IMPORTS:
-            import numpy as np
-
-        return np.array(edge_rows(self.outward.knots) * len(self.tables)).reshape(-1)
 
     @computed_once
     def largest(self) -> float:
@@ -355,6 +343,20 @@ class OverY(Load):
     def told(self, conversion: "Conversion | None" = None) -> str:
         """The table in a line; with a conversion in that unit."""
         return told(self.place, self.tables, self.kind, self.unit, conversion)
+
+
+def ahead(motion: Mapping[str, Any], way: Any) -> Any:
+    """Negative where the slider goes inward; at a dead centre where it will.
+
+    motion   Y and its derivatives by theta
+    way      negative where the crank turns backwards
+    """
+    with IMPORTS:
+        import numpy as np
+
+    _, slope, bend = (motion[name] for name in POSITION)
+    forward = np.where(np.equal(slope, 0.0), bend, slope)
+    return np.where(np.less(way, 0.0), -forward, forward)
 
 
 def _plain(x: Any) -> Any:

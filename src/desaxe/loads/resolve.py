@@ -7,15 +7,11 @@ q by a parameter p that the load F depends on is the Program's own, at a fixed l
 
     numbers, loads = split(inputs)             # what varies with the motion, apart
     plan = plan_of(names, loads, state, mu)    # what to evaluate for these names, and over which motion
-    forces = plan.forces(place, motion)        # F_X and F_Y at these angles, and their derivatives
-    plan.totals(values, forces)                # names -> values, with total derivatives
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from math import nan
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ..mechanism.catalogue import law_name, quantity
@@ -26,13 +22,11 @@ from ..mechanism.program import Variant, program_of
 from ..mechanism.quantity_units import UnitSystem
 from ..support.forks import IMPORTS
 from .arguments import arguments_of, by_position
-from .function import FunctionOverTheta, naming
-from .load import Load, OverTheta, OverY
-from .pieces import Place, ahead, pieces_at
-from .stroke import NONE, OverStroke
+from .function import FunctionOverTheta
+from .load import Load, OverY
+from .stroke import OverStroke
 
 VARIABLE = ("F_X", "F_Y")  # inputs that may vary with the motion
-SPEEDS = ("omega0", "omega", "alpha")  # the crank turns in the sense of their sign
 
 
 def as_load(name: str, value: Any) -> Load:
@@ -100,17 +94,6 @@ class Term(NamedTuple):
     parameter: str
 
 
-class Forces(NamedTuple):
-    """Loads at some crank angles, and their derivatives by (force, parameter).
-
-    status  by force: not 0 where it has no value, or a derivative has none
-    """
-
-    values: dict[str, Any]
-    slopes: dict[tuple[str, str], Any]
-    status: dict[str, Any]
-
-
 class LoadPlan(NamedTuple):
     """A plan to evaluate names under loads that vary with the motion."""
 
@@ -120,51 +103,6 @@ class LoadPlan(NamedTuple):
     loads: Mapping[str, Load]  # those that matter
     motion: tuple[str, ...]  # names of the motion, at a fixed load, which the loads and derivatives need
     forces_of: Mapping[str, tuple[str, ...]]  # those that a name depends on
-
-    def forces(
-        self, place: Place, motion: Mapping[str, Any], held: Mapping[str, Any] = MappingProxyType({})
-    ) -> Forces:
-        """The loads at these places with this motion.
-
-        held   numbers of the pieces of loads over Y that hold, where they are known
-        """
-        values: dict[str, Any] = {}
-        slopes: dict[tuple[str, str], Any] = {}
-        status: dict[str, Any] = {}
-        wanted = {(t.force, t.parameter) for terms in self.terms.values() for t in terms}
-        for name, load in self.loads.items():
-            if isinstance(load, OverTheta):
-                with naming(name):
-                    value, slope = load.both(place.theta)
-                known = {"theta": slope}
-            else:
-                assert isinstance(load, OverY)
-                along = load.along(motion)
-                if name in held:
-                    value, by_position = load.held(along, held[name])
-                elif load.jumping:
-                    value, by_position = load.held(along, pieces_at(load, place, motion))
-                else:
-                    value, by_position = load.both(along, ahead(motion, place.way))
-                known = {p: by_position * load.moved(p, motion) for n, p in wanted if n == name}
-                if isinstance(load, OverStroke):
-                    status[name] = load.status(motion)
-            values[name] = _finite_or_zero(value)
-            slopes.update({(n, p): known[p] for n, p in wanted if n == name})
-        return Forces(values, slopes, status)
-
-    def totals(self, found: Mapping[str, Any], forces: Forces) -> dict[str, Any]:
-        """The requested total derivatives, from the values of `names`."""
-        result = {}
-        for name in self.shown:
-            total = found[name]
-            for slope, force, parameter in self.terms.get(name, ()):
-                total = total + found[slope] * forces.slopes[force, parameter]
-            for force in self.forces_of.get(name, ()):
-                if force in forces.status:
-                    total = _with_status(total, forces.status[force], name == STATUS)
-            result[name] = total
-        return result
 
 
 MOST_PLANS = 1024
@@ -257,35 +195,9 @@ def way_of(given: Mapping[str, Any]) -> Any:
     speed, alpha = given.get("omega"), given.get("alpha")
     if speed is None:
         speed, alpha = given.get("omega0"), None
-    if speed is None or (isinstance(speed, float) and (speed or not isinstance(alpha, float))):
+    if speed is None or alpha is None:
         return 1.0 if speed is None else speed
-    if isinstance(speed, float) and isinstance(alpha, float):
-        return alpha
     with IMPORTS:
         import numpy as np
 
-    return speed if alpha is None else np.where(np.equal(speed, 0.0), alpha, speed)
-
-
-def _finite_or_zero(value: Any) -> Any:
-    """The load with NaN replaced by 0: a point without motion has NaN and a status of its own."""
-    if isinstance(value, float):
-        return value if value - value == 0.0 else 0.0
-    with IMPORTS:
-        import numpy as np
-
-    return np.nan_to_num(value, nan=0.0, posinf=0.0, neginf=0.0)
-
-
-def _with_status(value: Any, status: Any, is_status: bool) -> Any:
-    """A value that depends on a load without one is NaN; a status says why, where it said nothing else."""
-    if isinstance(status, int):
-        if is_status:
-            return value or status
-        return nan if status == NONE else value
-    with IMPORTS:
-        import numpy as np
-
-    if is_status:
-        return np.where(np.equal(value, 0), status, value).astype(np.int8)
-    return np.where(np.equal(status, NONE), nan, value)
+    return np.where(np.equal(speed, 0.0), alpha, speed)

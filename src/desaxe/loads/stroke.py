@@ -10,7 +10,6 @@ from ..support.forks import IMPORTS
 from .load import POSITION, OverY
 
 DEAD_CENTRES = ("outer", "inner")
-NONE, SINGULAR = 1, 2  # status: there is no such dead centre; it moves infinitely fast with the lengths
 
 
 @dataclass(frozen=True, repr=False)
@@ -61,19 +60,6 @@ class OverStroke(OverY):
             by_centre = motion[f"{self.centre}_wrt_{parameter}"]
             change = change + np.where(np.isfinite(by_centre), by_centre, np.nan)
         return np.where(before, -change, change)
-
-    def status(self, motion: Mapping[str, Any]) -> Any:
-        """1 where there is no such dead centre, 2 where a derivative that is among the motion is infinite."""
-        centre = motion[self.centre]
-        slopes = [motion[n] for n in motion if n.startswith(f"{self.centre}_wrt_")]
-        if isinstance(centre, float):
-            singular = any(slope - slope != 0.0 for slope in slopes)
-            return NONE if centre != centre else SINGULAR if singular else 0
-        with IMPORTS:
-            import numpy as np
-
-        singular = np.logical_or.reduce([~np.isfinite(s) for s in slopes]) if slopes else False
-        return np.where(np.isnan(centre), NONE, np.where(singular, SINGULAR, 0))
 
     def _content(self) -> str:
         return f"{self.dead_centre} {super()._content()}"

@@ -9,7 +9,6 @@ or F'(d) sign(Y_dc - Y) (dY_dc/dp - Y_wrt_p) over the distance d from a dead cen
 """
 
 from collections.abc import Mapping, Sequence
-from itertools import pairwise
 from math import nan
 from sys import float_info
 from typing import NamedTuple
@@ -18,12 +17,6 @@ from ..compiler.passes.slicing import drop_unused
 from ..compiler.program import Argument, Line, Note, Program, TableName, names_in, validate
 from .inputs import INPUTS
 from .names import LENGTHS, STATUS
-
-NEAR_JUMP = "near_jump"  # the output: rounding may decide on the piece of a load
-EDGES = "_edges"  # after the name of a force: its table of distances from knots (see `edge_rows`)
-NEAR = 2.0**-44  # of AB + BC: next to a knot, as far as a rounded position tells
-FLAT = 2.0**-36  # of AB: next to a dead centre, as far as a rounded slope tells
-FAR = 2.0**-48  # of a piece's length: more than is rounded of the distance from its ends
 
 
 class LoadLines(NamedTuple):
@@ -35,7 +28,6 @@ class LoadLines(NamedTuple):
     first   the first knot of such a table
     ways    whether another table holds for the way inward
     held    whether the number of the piece that holds is an input, `<force>_piece`
-    jumps   whether such a load over the slider's place jumps
     """
 
     force: str
@@ -44,7 +36,6 @@ class LoadLines(NamedTuple):
     first: float | str = 0.0
     ways: bool = True
     held: bool = False
-    jumps: bool = False
 
 
 class Total(NamedTuple):
@@ -74,15 +65,13 @@ def with_totals(
 
     names   quantities -> the outputs of the program that have them: of the totals, of the slopes in their
             terms, and of the motion that loads over the slider's place need
-    others  lines of the program that are outputs too, and NEAR_JUMP
+    others  lines of the program that are outputs too
     """
-    writer = _Writer(program, names, way, NEAR_JUMP in others)
+    writer = _Writer(program, names, way)
     for load in loads:
         writer.load(load, {p for total in totals for _, force, p in total.terms if force == load.force})
     writer.lines += writer.late
     outputs = *(writer.total(total) for total in totals), *others
-    if NEAR_JUMP in others:
-        writer.near_jump([load for load in loads if load.jumps])
     used = dict.fromkeys(a for line in writer.lines for a in names_in(line.args))
     made = {line.name for line in writer.lines}
     more = [name for name in used if name not in made and name not in program.inputs]
@@ -109,23 +98,11 @@ class Under(NamedTuple):
         return with_totals(program, names, self.loads, self.totals, way, others)
 
 
-def edge_rows(knots: Sequence[float]) -> list[tuple[float, float, float, float]]:
-    """The cubics of a table of at most the distance from the nearest knot, and at least half of it."""
-    rows = [(0.0, -1.0, 0.0, 0.0)]
-    for left, right in pairwise(knots):
-        width = right - left
-        rows.append((-FAR * width, 1.0, -1.0 / width, 0.0) if width else (0.0, 0.0, 0.0, 0.0))
-    return [*rows, (0.0, 1.0, 0.0, 0.0)]
-
-
 class _Writer:
     """Appends lines: those that no load changes, the loads, the others, the totals."""
 
-    def __init__(
-        self, program: Program, names: Mapping[str, str], way: TurningSense, flags_turns: bool
-    ) -> None:
-        self.names, self.way, self.flags_turns = names, way, flags_turns
-        self.looked_up: dict[str, tuple[str, str]] = {}  # force -> where, and the piece there
+    def __init__(self, program: Program, names: Mapping[str, str], way: TurningSense) -> None:
+        self.names, self.way = names, way
         self.notes = dict(program.notes)
         self.types = {line.name: line.type for line in program.lines}
         self.status: dict[str, tuple[str, str]] = {}  # of a force over the stroke: none, singular
@@ -154,7 +131,6 @@ class _Writer:
         if not load.held:
             way = 1.0 if load.over == "theta" or not load.ways else self._ahead()
             self.new(piece, "lookup_piece", x, table, way)
-        self.looked_up[force] = x, piece
         value = self.new(f"{force}_found", "lookup", x, table, piece)
         size = self.new(f"{force}_size", "abs", value)
         finite = self.new(f"{force}_is_finite", "le", size, float_info.max, type="bool")
@@ -200,10 +176,8 @@ class _Writer:
         slope, bend = self.names["Y_wrt_theta"], self.names["Y_wrt_theta_theta"]
         rests = self.new("speed_is_0", "eq", self.way.speed, 0.0, type="bool")
         turning = self.new("way_of_turning", "select", rests, self.way.start, self.way.speed)
-        forward = slope
-        if not self.flags_turns:
-            turns = self.new("slider_turns", "eq", slope, 0.0, type="bool")
-            forward = self.new("way_forward", "select", turns, bend, slope)
+        turns = self.new("slider_turns", "eq", slope, 0.0, type="bool")
+        forward = self.new("way_forward", "select", turns, bend, slope)
         back = self.new("way_back", "neg", forward)
         backwards = self.new("turns_backwards", "lt", turning, 0.0, type="bool")
         return self.new("way_ahead", "select", backwards, back, forward)
@@ -256,28 +230,6 @@ class _Writer:
         why = self.new(f"{force}_moves_status", "select", moves, 0, 2, type="i64")
         own = self.new(f"{force}_status", "select", there, why, 1, type="i64")
         return self.new(f"{name}_under_{force}", "select", self._is_good(found), own, found, type="i64")
-
-    def near_jump(self, loads: Sequence[LoadLines]) -> None:
-        """The condition that rounding may decide on the piece of some of the loads."""
-        reach = self.new("reach_of_slider", "add", "AB", "BC")
-        room = self.new("near_a_knot", "mul", NEAR, reach)
-        found: Argument = False
-        for load in loads:
-            x, piece = self.looked_up[load.force]
-            away = self.new(f"{load.force}_to_knot", "lookup", x, TableName(load.force + EDGES), piece)
-            near = self.new(f"{load.force}_near", "le", away, room, type="bool")
-            found = self.new(f"{load.force}_or_before", "or", found, near, type="bool")
-        if any(load.ways for load in loads):
-            pace = self.new("pace_of_slider", "abs", self.names["Y_wrt_theta"])
-            flat = self.new("near_dead_centre", "mul", FLAT, "AB")
-            found = self.new(
-                "turns_or_before",
-                "or",
-                found,
-                self.new("turning", "le", pace, flat, type="bool"),
-                type="bool",
-            )
-        self.new(NEAR_JUMP, "copy", found, type="bool")
 
     def _is_good(self, status: Argument) -> Argument:
         """The condition that a status is 0: what chooses it chooses True for 0 and else False."""

@@ -166,12 +166,12 @@ def _arcs(designs: SearchedDesigns, met: Mapping[str, Array], dead: Array) -> di
         if isinstance(load := designs.loads[name], OverY) and load.jumping
     }
     if len(designs.loads) > 1:
-        _part_jumps(designs._replace(columns=clean), arcs)
+        _join_jumps(designs._replace(columns=clean), arcs)
     return arcs
 
 
-def _part_jumps(designs: SearchedDesigns, arcs: dict[str, Arcs]) -> None:
-    """Let arcs begin exactly where another load jumps at the same angle, as far as rounding tells."""
+def _join_jumps(designs: SearchedDesigns, arcs: dict[str, Arcs]) -> None:
+    """Let arcs begin where another load jumps at the same angle, as far as rounding tells."""
     for name, own in arcs.items():
         others = [np.full((designs.size, 1), np.nan)]
         others += [np.where(arcs[n].leaps, arcs[n].starts, np.nan) for n in arcs if n != name]
@@ -182,7 +182,8 @@ def _part_jumps(designs: SearchedDesigns, arcs: dict[str, Arcs]) -> None:
         angles = np.concatenate(others, axis=1)[:, None, :]
         apart = np.abs(np.where(own.leaps, own.starts, np.nan)[:, :, None] - angles)
         for row, number in np.argwhere((apart <= BESIDE * np.spacing(np.abs(angles))).any(axis=2)).tolist():
-            own.starts[row, number] = own.first_angle(designs.place(row), row, number)
+            near = angles[row, 0]
+            own.starts[row, number] = near[np.nanargmin(np.abs(near - own.starts[row, number]))]
 
 
 def _marks(parts: list[tuple[Array, int]], size: int) -> Marks:

@@ -18,7 +18,8 @@ from .nodes import Array
 from .special import AT_KINK, ROUNDED
 
 EQUAL = 2.0**-40  # of a value: limits that differ by less are equal
-APART = 1e-9  # of a value: what friction of the other side changes is more
+APART = 1e-9  # of a value: what the other side of a jump changes is more
+STEPS = np.append(0.0, 2.0 ** np.arange(7.0))  # last bits of an angle, up to ROUNDED
 # What keeps its value at a kink that moves with the lengths: a quantity, or the difference of two.
 KEPT: dict[int, tuple[str, ...]] = {
     CROSSING: ("Y",),
@@ -70,11 +71,14 @@ def _complete(values: ValuesUnderLoads, kind: int, jumps: Jumps, theta: Array, o
     The search ends next to it: of so few doubles the slope tells what they change, and no gradient changes.
     """
     rows, before = jumps.rows, theta[jumps.rows]
-    there = np.clip(_nearest(values, jumps), *values.designs.theta)
-    turning = _turns_round(jumps.kinds) & values.designs.rubs
-    if turning.any():
-        there[turning] = _certain(values, rows[turning], there[turning], jumps.sides[turning])
+    there = np.where(jumps.sides > 0, jumps.starts, np.nextafter(jumps.starts, -inf))
+    there = np.clip(there, *values.designs.theta)
+    moves = jumps.kinds != FIXED
+    if moves.any():
+        limit = out[:2, rows[moves]]
+        there[moves] = _certain(values, rows[moves], there[moves], jumps.sides[moves], limit)
     # There one Program is certain of the side; another one may round to the other side, or to none.
+    turning = _turns_round(jumps.kinds) & values.designs.rubs
     aside = there + np.where(turning, jumps.sides * ROUNDED * np.spacing(1.0 + np.abs(there)), 0.0)
     theta[rows] = there
     out[0, rows] += out[1, rows] * (there - before)
@@ -109,31 +113,24 @@ def _jumps(values: ValuesUnderLoads, theta: Array) -> Jumps | None:
     return Jumps(rows[last], starts[last], sides[last], kinds[places[last]])
 
 
-def _nearest(values: ValuesUnderLoads, jumps: Jumps) -> Array:
-    """The doubles that are nearest to jumps on their sides."""
-    rows, starts, after = jumps.rows, jumps.starts, jumps.sides > 0
-    first, last = np.full((2, rows.size), np.nan)
-    for arcs in values.course.arcs.values():
-        here, numbers = np.nonzero((arcs.starts[rows] == starts[:, None]) & arcs.leaps[rows])
-        own = rows[here]
-        angles = arcs.first_angles(values.designs.places(own), own, numbers)
-        np.fmin.at(first, here, angles)
-        np.fmax.at(last, here, angles)
-    nearest = np.where(after, last, np.nextafter(first, -inf))
-    return np.where(np.isnan(first), np.where(after, starts, np.nextafter(starts, -inf)), nearest)
+def _certain(
+    values: ValuesUnderLoads, rows: Rows, theta: Array, side: NDArray[np.int8], limit: Array
+) -> Array:
+    """The nearest angles to jumps from which on rounding takes their own side; as they are where none does.
 
-
-def _certain(values: ValuesUnderLoads, rows: Rows, theta: Array, side: NDArray[np.int8]) -> Array:
-    """The nearest angles to dead centres from which on rounding takes the friction of their own side."""
-    steps = np.arange(ROUNDED + 1.0) * np.spacing(np.abs(theta) + 1.0)[:, None]
-    angles = theta[:, None] + side[:, None] * steps
+    limit   value and slope of the quantity on that side
+    """
+    steps = side[:, None] * STEPS * np.spacing(np.abs(theta) + 1.0)[:, None]
+    angles = np.clip(theta[:, None] + steps, *values.designs.theta)
     designs, name = values.designs.part(rows), values.all[0]
-    numbers = np.repeat(np.arange(rows.size), angles.shape[1])
+    numbers = np.repeat(np.arange(rows.size), STEPS.size)
     found = designs.values((name,), numbers, angles.reshape(-1))[name].reshape(angles.shape)
-    wrong = ~(np.abs(found - found[:, -1:]) <= APART * np.abs(found[:, -1:]))
-    count = np.where(wrong.any(axis=1), angles.shape[1] - wrong[:, ::-1].argmax(axis=1), 0)
-    found = angles[np.arange(rows.size), np.minimum(count, angles.shape[1] - 1)]
-    return np.asarray(found)
+    (value, slope), room = limit[:, :, None], 4.0 * ROUNDED * np.spacing(1.0 + np.abs(theta))
+    good = np.abs(found - value) <= APART * np.abs(value) + np.abs(slope) * room[:, None]
+    good[:, :-1] &= good[:, 1:]
+    first = np.where(good.any(axis=1), good.argmax(axis=1), 0)
+    nearest: Array = angles[np.arange(rows.size), first]
+    return nearest
 
 
 def _turns_round(kinds: NDArray[np.int8]) -> NDArray[np.bool_]:

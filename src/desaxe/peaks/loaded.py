@@ -3,8 +3,7 @@
 Loads are lines of the Programs of the search: one over the crank angle is an input, as its derivative is; a
 table over the slider's place is an argument of the machine code. Between jumps the piece of such a table is
 held, as the arcs of each design tell it, so that next to a jump a value is the limit from its side; there are
-nodes on both. Double-double arithmetic looks nothing up, and derivatives that are not derived have no totals:
-there the loads come first, then the values.
+nodes on both.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,17 +12,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.under_loads.columns import MOTION, forces_at, plan_for
-from ..evaluation.under_loads.request import table_arrays, under_loads
-from ..evaluation.values import values
+from ..evaluation.under_loads.request import MOTION, LoadInputs, plan_for, under_loads
 from ..loads.load import Load, OverTheta, OverY
-from ..loads.resolve import Forces, LoadPlan
-from ..mechanism.load_lines import LoadLines
-from ..mechanism.names import parts, sensitivity
+from ..mechanism.load_lines import LoadLines, Total, Under
+from ..mechanism.names import sensitivity
 from .course import Course
-from .evaluations import Evaluations, compiled, totals_of
+from .evaluations import compiled, totals_of
 from .nodes import Array
-from .programs import Search, needs_own, programs_of
+from .programs import Search, needs_own
 from .special import SearchedDesigns
 
 Rows = NDArray[np.intp]
@@ -38,12 +34,8 @@ class ValuesUnderLoads:
     def __init__(self, name: str, search: Search, designs: SearchedDesigns, course: Course) -> None:
         self.designs, self.course, self.search = designs, course, search
         self.all = [name, *(sensitivity(name, p) for p in ("theta", *search.parameters))]
-        self.bad = np.isnan(np.array(list(designs.columns.values()))).any(axis=0)
-        self.derived = not needs_own(search.name, ("theta", *search.parameters))
-        self.plans: dict[int, LoadPlan] = {}
-        under = search_under(search, self.all, designs) if self.derived else None
-        self.under = under
-        self.tables = table_arrays(designs.loads)
+        self.under = search_under(search, self.all, designs)
+        self.tables = LoadInputs(designs.loads, ()).tables()
 
     def at(self, count: int, rows: Rows, theta: Array, pieces: dict[str, Rows] | None = None) -> list[Array]:
         """Value, slope and gradient, the first `count` of them, at angles that broadcast with some designs.
@@ -52,14 +44,13 @@ class ValuesUnderLoads:
         """
         held = self.course.pieces(rows, theta) if pieces is None else pieces
         aside = self.course.aside(rows, theta) if pieces is None and self.designs.rubs else theta
-        by = self._of_totals if self.under is not None else self._of_good
-        found = [*by(count, rows, aside, held)][:count]
+        found = [*self._of_totals(count, rows, aside, held)][:count]
         if aside is not theta:
             found[0] = np.where(aside == theta, found[0], found[0] + found[1] * (theta - aside))
         return found
 
     def _of_totals(self, count: int, rows: Rows, theta: Array, held: dict[str, Rows]) -> Sequence[Array]:
-        """By machine code."""
+        """Value, slope and gradient by machine code, or the first two."""
         totals = compiled(totals_of, self.under, "curve" if count == 2 else "finish")
         inputs = {**self.tables, **over_theta_at(self.designs.loads, theta), "theta": theta}
         inputs |= {f"{force}_piece": piece.astype(float) for force, piece in held.items()}
@@ -69,47 +60,6 @@ class ValuesUnderLoads:
                 column = columns[name]
                 inputs[name] = column[rows] if column.strides[0] else column[:1]  # or one number for all
         return totals(inputs)
-
-    def _of_good(self, count: int, rows: Rows, theta: Array, held: dict[str, Rows]) -> Sequence[Array]:
-        """By values at the angles and designs that are numbers; NaN at others."""
-        theta, rows = np.broadcast_arrays(theta, rows)
-        bad = np.isnan(theta) | self.bad[rows]
-        shape, rows, theta = theta.shape, rows.reshape(-1), np.where(bad, 1.0, theta).reshape(-1)
-        inputs: dict[str, Any] = {"alpha": 0.0, "theta": theta}
-        inputs |= {n: np.where(self.bad, 1.0, column)[rows] for n, column in self.designs.columns.items()}
-        held = {force: piece.reshape(-1) for force, piece in held.items()}
-        found = self._of_plan(count, inputs, held) if self.derived else self._of_search(inputs, held)
-        return [np.where(bad, np.nan, row.reshape(shape)) for row in found]
-
-    def _of_plan(self, count: int, inputs: dict[str, Any], held: dict[str, Rows]) -> list[Array]:
-        names = list(dict.fromkeys(self.all[:count]))
-        given = {**dict.fromkeys(MOTION), **inputs}
-        plan, forces = self._forces(names, inputs, held)
-        branch, accuracy = self.designs.branch, self.designs.accuracy
-        found = plan.totals(values(list(plan.names), {**given, **forces.values}, branch, accuracy), forces)
-        return [found[name] for name in self.all[:count]]
-
-    def _of_search(self, inputs: dict[str, Any], held: dict[str, Rows]) -> list[Array]:
-        """By the search's Program: of a name whose own derivatives are not derived."""
-        base = parts(self.all[0])[0]
-        names = [base, *(sensitivity(base, p) for p in ("theta", *self.search.parameters))]
-        _, forces = self._forces(names, inputs, held)
-        columns = {**inputs, **forces.values}
-        block = np.stack([columns[n] for n in programs_of(self.search).inputs])
-        out = Evaluations(self.search).finish(inputs["theta"], block)
-        fixed = out.copy()
-        for (force, parameter), slope in forces.slopes.items():
-            place = 1 if parameter == "theta" else 2 + self.search.parameters.index(parameter)
-            out[place] += fixed[2 + self.search.parameters.index(force)] * slope
-        return list(out)
-
-    def _forces(
-        self, names: list[str], inputs: dict[str, Any], held: dict[str, Rows]
-    ) -> tuple[LoadPlan, Forces]:
-        if len(names) not in self.plans:
-            self.plans[len(names)] = plan_for(names, {**inputs, **self.designs.loads})[1]
-        plan = self.plans[len(names)]
-        return plan, forces_at(plan, inputs, self.designs.branch, self.designs.accuracy, held)
 
     def block(self, designs: SearchedDesigns, rows: Rows) -> Array:
         """The inputs of designs for `curve` and `finish`."""
@@ -125,20 +75,46 @@ class ValuesUnderLoads:
         return np.array(self.at(len(self.all), block[0].astype(np.intp), theta))
 
 
-def search_under(search: Search, names: Sequence[str], designs: SearchedDesigns) -> Search | None:
-    """The search of total derivatives under loads; None in double-double arithmetic, which looks nothing up.
+def search_under(search: Search, names: Sequence[str], designs: SearchedDesigns) -> Search:
+    """The search of total derivatives under loads.
 
     names   the quantity, its slope over theta, its gradient
+
+    Where these are not derived, they are those of the Program, line by line, at a fixed force; ValueError
+    for a quantity that depends on the slope of a load, of which they would need the second one.
     """
-    if search.extended:
-        return None
+    name, *_ = names
+    own = needs_own(search.name, ("theta", *search.parameters))
     inputs = {**dict.fromkeys(MOTION), "alpha": 0.0, "theta": 0.0, **designs.columns}
-    _, plan = plan_for(names, {**inputs, **designs.loads})
-    under = under_loads(plan, inputs, designs.branch, "standard").wanted.form.under
-    if under is None or len(plan.loads) < len(designs.loads):
-        return None
-    lines = (_line(line, designs.loads[line.force]) for line in under.loads)
-    return search._replace(form=search.form._replace(under=under._replace(loads=tuple(lines))))
+    _, plan = plan_for((name,) if own else names, {**inputs, **designs.loads})
+    if own and plan.terms.get(name):
+        raise ValueError(
+            f"peak of {name}: not derived under {' and '.join(plan.loads)}, of which it has the slope"
+        )
+    under = under_loads(plan, inputs, designs.branch, "standard").asked.form.under
+    assert under is not None
+    under = under._replace(loads=tuple(_line(line, designs.loads[line.force]) for line in under.loads))
+    if own:
+        under = _of_partial(search, under, plan.loads)
+    return search._replace(form=search.form._replace(under=under))
+
+
+def _of_partial(search: Search, under: Under, loads: Mapping[str, Load]) -> Under:
+    """The totals of a quantity and its derivatives from those at a fixed force, and the motion they need."""
+    name, motion = search.name, dict[str, None]()
+    forces, totals = tuple(loads), [Total(search.name, tuple(loads))]
+    for p in ("theta", *search.parameters):
+        terms = tuple(
+            (sensitivity(name, force), force, p) for force in forces if p in loads[force].parameters
+        )
+        totals.append(Total(sensitivity(name, p), forces, terms))
+    for load in loads.values():
+        if isinstance(load, OverY):
+            motion |= dict.fromkeys(
+                load.motion(p for p in load.parameters if p in ("theta", *search.parameters))
+            )
+    names = tuple((one, one) for one in (*(total.name for total in totals), *motion))
+    return under._replace(names=names, totals=tuple(totals))
 
 
 def _line(line: LoadLines, load: Load) -> LoadLines:

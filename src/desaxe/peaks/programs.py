@@ -80,24 +80,26 @@ def programs_of(search: Search) -> SearchPrograms:
 @lru_cache(maxsize=1024)
 def _whole(search: Search) -> tuple[Program, list[str]]:
     """One program of value, slope and gradient, and the names of its outputs."""
-    if search.form.under is not None:
+    under, form = search.form.under, search.form._replace(under=None)
+    by = [_by(search.name, p) for p in ("theta", *search.parameters)]
+    if under is not None and all(map(has, by)):
         program = specialise((), search.form, search.fixed)
         return program, list(program.outputs)
-    name = search.name
-    wanted = [name, sensitivity(name, "theta")]
-    derived = [n for n in wanted if has(n)]
-    partial = {p: _by(name, p) for p in search.parameters}
-    derived += [n for n in partial.values() if has(n)]
-    derived = list(dict.fromkeys(derived))
-    program = specialise(tuple(derived), search.form, search.fixed)
+    motion = [] if under is None else [name for name, _ in under.names[1 + len(by) :]]
+    derived = tuple(dict.fromkeys((search.name, *filter(has, by), *motion)))
+    program = specialise(derived, form, search.fixed)
     called = dict(zip(derived, program.outputs, strict=True))
-    names = [called[name]]
-    for parameter, known in {"theta": wanted[1], **partial}.items():
+    names = [called[search.name]]
+    for parameter, known in zip(("theta", *search.parameters), by, strict=True):
         if known in called:
             names.append(called[known])
         else:
-            program, found = _differentiated(program, called[name], parameter)
+            program, found = _differentiated(program, called[search.name], parameter)
             names.append(found)
+    if under is not None:
+        outputs = *names, *(called[name] for name in motion)
+        program = under.added_to(program._replace(outputs=outputs), dict(search.fixed))
+        names = [*program.outputs]
     return program, names
 
 

@@ -11,11 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.under_loads.columns import MOTION
-from ..evaluation.under_loads.loaded import values_under_loads
+from ..evaluation.under_loads.loaded import evaluate_loaded
 from ..loads.load import Load
-from ..loads.pieces import Place
-from ..loads.resolve import way_of
 from ..mechanism.closed import TURN
 from ..mechanism.closed.angles import dead_centres, limit_angles, repeated
 from ..mechanism.closed.functions import closed_form
@@ -66,21 +63,12 @@ class SearchedDesigns(NamedTuple):
         """The designs of these rows."""
         return self._replace(columns={name: column[rows] for name, column in self.columns.items()})
 
-    def place(self, row: int) -> Place:
-        """Marks that tell a design's slider its place, at the angle 0."""
-        design = {name: float(column[row]) for name, column in self.columns.items()}
-        return Place(0.0, [design[name] for name in LENGTHS], way_of(design), self.branch)
-
-    def places(self, rows: NDArray[np.intp]) -> Place:
-        """Marks that tell the sliders of the designs `rows` their places, at the angle 0."""
-        way = np.broadcast_to(way_of(self.columns), (self.size,))
-        return Place(0.0, [self.columns[name][rows] for name in LENGTHS], way[rows], self.branch)
-
     def values(self, names: tuple[str, ...], rows: NDArray[np.intp], theta: Array) -> dict[str, Any]:
         """Values of names by their name, for the designs `rows` at one angle each."""
         inputs: dict[str, Any] = {name: column[rows] for name, column in self.columns.items()}
-        given = {**dict.fromkeys(MOTION), "alpha": 0.0, **inputs, **self.loads, "theta": theta}
-        return values_under_loads(list(names), given, self.branch)
+        given = {"alpha": 0.0, **inputs, **self.loads, "theta": theta}
+        found: dict[str, Any] = evaluate_loaded(list(names), given, self.branch)
+        return found
 
 
 def are_special(designs: SearchedDesigns) -> NDArray[np.bool_]:

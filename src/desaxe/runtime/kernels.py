@@ -15,7 +15,6 @@ from ..compiler.program import Line, Program
 from ..compiler.text import write_lines
 from ..mechanism.constants import constants, double_constants
 from ..mechanism.inputs import LEAST, SAFE
-from ..mechanism.load_lines import EDGES, NEAR_JUMP
 from ..mechanism.names import LENGTHS, LOADS
 from ..mechanism.program import Variant
 from ..support.forks import IMPORTS
@@ -104,9 +103,7 @@ def kernel_of(key: KernelKey) -> Kernel:
 def tables_of(key: KernelKey) -> tuple[str, ...]:
     """The tables of a key's loads, which are arguments of its kernel."""
     under = key.form.under
-    loads = () if under is None else tuple(load for load in under.loads if load.over)
-    edges = [load.force + EDGES for load in loads if load.jumps and NEAR_JUMP in key.names]
-    return *(load.force for load in loads), *edges
+    return () if under is None else tuple(load.force for load in under.loads if load.over)
 
 
 def _loops_of(key: KernelKey) -> Kernel:

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from ..compiler.forms import in_two_forms
 from ..compiler.languages.python import compile_python
+from ..compiler.program import tables_in
 from ..mechanism.constants import double_constants
 from ..mechanism.own_lines import not_extended
 from ..mechanism.program import Variant
@@ -22,36 +23,38 @@ class PointFunction(NamedTuple):
     function: Function
     inputs: tuple[str, ...]
 
-    def run(self, values: Mapping[str, float]) -> tuple[Any, ...]:
+    def run(self, values: Mapping[str, Any]) -> tuple[Any, ...]:
         """The outputs at one point."""
-        return self.function(*(values[name] for name in self.inputs))
+        return self.function(*[values[name] for name in self.inputs])
 
 
 @lru_cache(maxsize=1024)
 def point_of(
     names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...], accuracy: str = "standard"
 ) -> PointFunction:
-    """The function of a request at single points, with its inputs in order."""
+    """The function of a request at single points, with its inputs in order: tables of loads are the last."""
     program = specialise(names, form, fixed, accuracy)
+    inputs = *program.inputs, *(f"{table}_{end}" for table in tables_in(program) for end in "xc")
     if accuracy != "extended":
-        return PointFunction(_by_margin(names, form, fixed), program.inputs)
+        return PointFunction(_by_margin(names, form, fixed, inputs), inputs)
     with IMPORTS:
         from ..compiler.passes.double_double import double_double
 
-    program = double_double(program, double_constants())
-    function = compile_python(program)
+    function = compile_python(double_double(program, double_constants()), inputs)
     if "theta" not in program.inputs:
-        return PointFunction(function, program.inputs)
-    place = program.inputs.index("theta")
+        return PointFunction(function, inputs)
+    index = program.inputs.index("theta")
 
     def checked(*values: float) -> tuple[Any, ...]:
-        check_angle(accuracy, values[place])
+        check_angle(accuracy, values[index])
         return function(*values)
 
-    return PointFunction(checked, program.inputs)
+    return PointFunction(checked, inputs)
 
 
-def _by_margin(names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...]) -> Function:
+def _by_margin(
+    names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...], inputs: tuple[str, ...]
+) -> Function:
     """A function that picks the plain or the stable form for each point.
 
     That is the plain form in a design with wide margins, the stable one elsewhere, and twice the digits where
@@ -59,15 +62,10 @@ def _by_margin(names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, fl
     """
     plain, stable = plain_form(names, form, fixed), specialise(names, form, fixed)
     if plain is None:
-        return compile_python(stable)
-    inputs = stable.inputs
-    tested = in_two_forms(
-        plain, plain._replace(lines=(), outputs=()), specialise(("wide_margins",), form, fixed)
-    )
-    first = compile_python(tested._replace(inputs=inputs))
-    second = cache(
-        lambda: compile_python(specialise((*names, "undecided"), form, fixed)._replace(inputs=inputs))
-    )
+        return compile_python(stable, inputs)
+    test = specialise(("wide_margins",), form._replace(under=None), fixed)
+    first = compile_python(in_two_forms(plain, plain._replace(lines=(), outputs=()), test), inputs)
+    second = cache(lambda: compile_python(specialise((*names, "undecided"), form, fixed), inputs))
     third = cache(lambda: point_of(names, form, fixed, "extended"))
 
     def function(*values: float) -> tuple[Any, ...]:

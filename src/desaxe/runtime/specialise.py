@@ -5,7 +5,7 @@ from functools import lru_cache
 from ..compiler.passes.pipeline import optimise
 from ..compiler.passes.slicing import keep_outputs
 from ..compiler.program import Line, Program, names_in, renamed
-from ..mechanism.load_lines import NEAR_JUMP, Under
+from ..mechanism.load_lines import Under
 from ..mechanism.own import used_by
 from ..mechanism.program import Variant, program_of
 from ..support.forks import IMPORTS
@@ -65,11 +65,11 @@ def _under_loads(
     """The program of the totals under loads, and of the names that follow theirs."""
     others = names[len(under.totals) :]
     own = [name for _, name in under.names]
-    needed = tuple(dict.fromkeys((*own, *(name for name in others if name != NEAR_JUMP))))
+    needed = tuple(dict.fromkeys((*own, *others)))
     program = _specialise(needed, form, fixed, accuracy)
     outputs = dict(zip(needed, program.outputs, strict=True))
     every = program._replace(outputs=tuple(outputs[name] for name in (*own, *needed)))
-    return under.added_to(every, dict(fixed), [outputs.get(name, name) for name in others])
+    return under.added_to(every, dict(fixed), [outputs[name] for name in others])
 
 
 @lru_cache(maxsize=1024)

@@ -1,7 +1,7 @@
 """A Program as plain Python over `math`: one point, microseconds, nothing compiled."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from .. import helpers
@@ -18,17 +18,20 @@ def emit_python(program: Program, docstring: str) -> str:
     return module_text(docstring, with_sources([point_text(program)]))
 
 
-def point_text(program: Program, name: str = "point") -> str:
-    """The function itself; the arrays of its tables, knots and coefficients, are its last arguments."""
+def point_text(program: Program, name: str = "point", arguments: Sequence[str] | None = None) -> str:
+    """The function itself; without `arguments` it takes its inputs, then the arrays of its tables."""
     returned = "".join(f"{output}, " for output in program.outputs)
     body = [*write_lines(with_short_temporaries(program), "python"), f"return ({returned.strip()})"]
-    tables = [f"{table}_{end}" for table in tables_in(program) for end in "xc"]
-    return function_text(name, [*program.inputs, *tables], body)
+    if arguments is None:
+        arguments = [*program.inputs, *(f"{table}_{end}" for table in tables_in(program) for end in "xc")]
+    return function_text(name, arguments, body)
 
 
-def compile_python(program: Program) -> Callable[..., tuple[Any, ...]]:
-    """The function, ready to be called."""
+def compile_python(
+    program: Program, arguments: Sequence[str] | None = None
+) -> Callable[..., tuple[Any, ...]]:
+    """The function, ready to be called; see `point_text`."""
     scope = dict(SCOPE)
-    exec(compile(point_text(program), "<desaxe point>", "exec"), scope)
+    exec(compile(point_text(program, arguments=arguments), "<desaxe point>", "exec"), scope)
     function: Callable[..., tuple[Any, ...]] = scope["point"]
     return function

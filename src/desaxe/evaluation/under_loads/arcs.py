@@ -1,19 +1,18 @@
 """Arcs of crank angles on which one piece of a load over Y holds, for many designs.
 
-Where an arc begins is rounded; which piece holds on it is not. So whoever holds the piece of an arc is on the
-right side of a jump, and can ask for the double next to it.
+An arc begins at the double nearest to its angle. Whoever holds its piece has the limits on both sides of a
+jump, whichever side a rounded position may be on.
 """
 
-from collections.abc import Callable, Mapping
-from math import inf, isfinite, nan, nextafter, ulp
+from collections.abc import Mapping
+from math import inf, nextafter
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...loads.angles import crossings
-from ...loads.load import OverY
-from ...loads.pieces import Place, first_doubles, piece_at, pieces_at
+from ...loads.load import OverY, ahead
 from ...loads.resolve import way_of
 from ...loads.table import SAME
 from ...mechanism.closed.angles import dead_centres, limit_angles, repeated
@@ -27,16 +26,12 @@ BESIDE = 1e-6  # rad: more than what is rounded of an angle next to a dead centr
 class Arcs(NamedTuple):
     """The arcs of a load: a row a design, empty places at the end.
 
-    load    the load
-    end     the last angle of all
     starts  the first angle of each arc, ascending, inf in empty places; the first lies before the range
     pieces  the piece that holds on each
     leaps   whether the load jumps where it begins
     turns   whether that is a dead centre, else a position
     """
 
-    load: OverY
-    end: float
     starts: Array
     pieces: NDArray[np.intp]
     leaps: NDArray[np.bool_]
@@ -49,34 +44,6 @@ class Arcs(NamedTuple):
             places += starts[rows] <= theta
         found: NDArray[np.intp] = self.pieces[rows, places]
         return found
-
-    def first_angles(self, place: Place, rows: NDArray[np.intp], numbers: NDArray[np.intp]) -> Array:
-        """The first doubles of arcs that begin at jumps, exactly; `place` is that of the designs `rows`."""
-        near = place._replace(theta=self.starts[rows, numbers])
-        found, sure = first_doubles(self.load, near, self.turns[rows, numbers])
-        for k in np.flatnonzero(~sure).tolist():
-            one = Place(0.0, [float(side[k]) for side in place.lengths], float(place.way[k]), place.branch)
-            found[k] = self.first_angle(one, int(rows[k]), int(numbers[k]), float(found[k]))
-        return np.asarray(found)
-
-    def first_angle(self, place: Place, row: int, number: int, known: float = nan) -> float:
-        """The first double of an arc that begins at a jump, exactly; `place` is the design's.
-
-        known   that double or the one before it
-        """
-        piece = int(self.pieces[row, number])
-
-        def holds(theta: float) -> bool:
-            return piece_at(self.load, place._replace(theta=theta)) == piece
-
-        if known == known:
-            return known if holds(known) else nextafter(known, inf)
-        before, inside = self._middle(row, number - 1), self._middle(row, number)
-        return _first(holds, before, float(self.starts[row, number]), inside)
-
-    def _middle(self, row: int, number: int) -> float:
-        first, after = map(float, self.starts[row, number : number + 2])
-        return first + 0.5 * ((nextafter(after, -inf) if isfinite(after) else self.end) - first)
 
 
 def arcs_of(
@@ -105,7 +72,7 @@ def arcs_of(
     way = np.broadcast_to(way_of(columns), lengths[0].shape)
     *wide, ways = (np.repeat(column, first.shape[1]) for column in (*lengths, way))
     motion = values(list(load.motion()), {**dict(zip(LENGTHS, wide, strict=True)), "theta": theta}, branch)
-    pieces = pieces_at(load, Place(theta, wide, ways, branch), motion).reshape(first.shape)
+    pieces = load.piece(load.along(motion), ahead(motion, ways)).reshape(first.shape)
     changes = np.append(np.ones((len(pieces), 1), np.bool_), pieces[:, 1:] != pieces[:, :-1], axis=1)
     rows, numbers = np.nonzero(changes)
     here, before = pieces[rows, numbers], pieces[rows, np.maximum(numbers, 1) - 1]
@@ -125,7 +92,7 @@ def arcs_of(
         return table
 
     parts = placed(angles, inf), placed(here, 0), placed(leaps, False), placed(turns, False)
-    return Arcs(load, nextafter(high, inf), *parts)
+    return Arcs(*parts)
 
 
 def meeting_in_turn(load: OverY, crossed: Array, dead: Array) -> Array:
@@ -147,21 +114,3 @@ def _starts(meeting: Array, limits: Array, low: float, high: float) -> Array:
         for k in range(1, starts.shape[1]):  # a position that is only just reached has two equal ones
             starts[:, k] = np.maximum(starts[:, k], np.nextafter(starts[:, k - 1], inf))
     return starts
-
-
-def _first(holds: Callable[[float], bool], before: float, start: float, inside: float) -> float:
-    """The first double that holds, next to `start`; no double up to `before` does, and `inside` does."""
-    bad, good, step = before, inside, ulp(start)
-    here = holds(start)
-    bad, good = (bad, start) if here else (start, good)
-    while bad < (there := start + (-step if here else step)) < good:
-        if holds(there) != here:
-            return _between(holds, *((there, good) if here else (bad, there)))
-        bad, good, step = (bad, there, 2.0 * step) if here else (there, good, 2.0 * step)
-    return _between(holds, bad, good)
-
-
-def _between(holds: Callable[[float], bool], bad: float, good: float) -> float:
-    while bad < (there := bad + 0.5 * (good - bad)) < good:
-        bad, good = (bad, there) if holds(there) else (there, good)
-    return good

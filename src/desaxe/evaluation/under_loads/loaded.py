@@ -1,6 +1,6 @@
-"""Values under loads that vary with the motion: first the loads at each point, then the Program."""
+"""Values under loads that vary with the motion, and labelled arrays as loads."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,12 +13,11 @@ from ...loads.tabulated import over_theta
 from ...mechanism.closed import TURN
 from ...mechanism.messages import amount, message_of
 from ...mechanism.names import STATUS
+from ...runtime.point import point_of
 from ...runtime.request import check_common, several, standstill
 from ..arrays import as_array
-from ..labelled import evaluate_labelled, is_labelled
-from ..values import values
-from .columns import MOTION, plan_for, require_angle, totals_at
-from .request import under_loads
+from ..values import answer_of, values
+from .request import MOTION, request_of
 
 Array = NDArray[Any]
 GAP = 1.5  # steps: a table that lacks no more of a turn is a whole one
@@ -28,50 +27,25 @@ def evaluate_loaded(
     names: str | Sequence[str],
     given: Mapping[str, Any],
     branch: int,
-    accuracy: str | float,
-    threads: int | None,
-    out: Any = None,
-    of_arrays: Callable[..., dict[str, Any]] | None = None,
-) -> Any:
-    """`evaluate` where F_X or F_Y varies with the motion; derivatives are total ones."""
-    wanted = (names,) if isinstance(names, str) else several(names)
-    check_common(given, branch, threads)
-    if out is None and any(map(is_labelled, given.values())):
-
-        def run(plain: dict[str, Any]) -> dict[str, Any]:
-            return values_under_loads(wanted, plain, branch, accuracy, threads, None, of_arrays)
-
-        labelled = evaluate_labelled(run, wanted, given)
-        return labelled[names] if isinstance(names, str) else labelled
-    found = values_under_loads(wanted, given, branch, accuracy, threads, out, of_arrays)
-    return found[names] if isinstance(names, str) else found
-
-
-def values_under_loads(
-    names: Sequence[str],
-    given: Mapping[str, Any],
-    branch: int,
     accuracy: str | float = "standard",
     threads: int | None = None,
     out: Any = None,
-    of_arrays: Callable[..., dict[str, Any]] | None = None,
-) -> dict[str, Any]:
-    """The values by name, under loads or without; see `values` for `of_arrays`."""
-    numbers, plan = plan_for(names, given)
-    given = {**dict.fromkeys(MOTION), **numbers}
-    if not plan.loads:
-        result: dict[str, Any] = values(list(names), given, branch, accuracy, threads, out, of_arrays)
-        return result
-    require_angle(plan, numbers)
-    if any(type(value) is not float for value in numbers.values()):
-        if STATUS in plan.shown and given["omega0"] is None and given["omega"] is None:
-            given = {**given, "omega0": standstill(plan.shown, {**given, **dict.fromkeys(plan.loads, 0.0)})}
-        columns = under_loads(plan, given, branch, accuracy).evaluate(given, threads, out)
-        if columns is not None:
-            return columns
-    if out is not None:
-        raise TypeError("out= is for arrays, but every input is a number")
-    return totals_at(plan, given, numbers, branch, accuracy, threads)
+) -> Any:
+    """`evaluate` where F_X or F_Y may vary with the motion; derivatives are total ones."""
+    wanted = (names,) if isinstance(names, str) else several(names)
+    check_common(given, branch, threads)
+    numbers, loads = split({name: value for name, value in given.items() if value is not None})
+    asked, inputs, own = request_of(wanted, numbers, loads, branch, accuracy)
+    if own is None:
+        return values(names, {**dict.fromkeys(MOTION), **numbers}, branch, accuracy, threads, out)
+    if STATUS in wanted and "omega0" not in numbers and "omega" not in numbers:
+        speed = standstill(wanted, {**numbers, **dict.fromkeys(own.loads, 0.0)})
+        if speed is not None:
+            return evaluate_loaded(names, {**given, "omega0": speed}, branch, accuracy, threads, out)
+    point = point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
+    answer = answer_of(asked, point, inputs, numbers, threads, out, own)
+    found = dict(zip(wanted, answer, strict=True)) if type(answer) is tuple else answer
+    return found[names] if isinstance(names, str) else found
 
 
 def loads_of(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Load]]:

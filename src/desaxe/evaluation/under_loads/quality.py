@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...loads.load import Load, OverY, TableOverTheta
-from ...loads.pieces import Place, ahead, pieces_at
+from ...loads.load import Load, OverY, TableOverTheta, ahead
 from ...loads.resolve import way_of
 from ...loads.stroke import OverStroke
 from ...loads.table import Table
@@ -22,8 +21,8 @@ from ...mechanism.names import LENGTHS, sensitivity
 from ...runtime.request import several
 from ..quality import ROUNDED_ONCE, Quality, conditions_of, digits_of, evaluate_quality
 from ..values import values
-from .columns import MOTION, forces_at, numeric, plan_for
 from .loaded import evaluate_loaded
+from .request import MOTION, numeric, plan_for
 
 Array = NDArray[Any]
 ROUNDINGS = 8.0  # of a cubic and its distance from a knot
@@ -48,8 +47,8 @@ def evaluate_loaded_quality(
         rest = (given, branch, accuracy, threads, out)
         return {name: evaluate_loaded_quality(name, *rest) for name in several(names)}
     numbers, plan = plan_for((names,), given)
-    forces = forces_at(plan, numbers, branch, "standard").values if plan.loads else {}
-    held = {**dict.fromkeys(MOTION), **numbers, **forces}
+    forces = {n: _force_and_error(load, numbers, branch, threads) for n, load in plan.loads.items()}
+    held = {**dict.fromkeys(MOTION), **numbers, **{n: force for n, (force, _) in forces.items()}}
     found: Quality = evaluate_quality(names, held, branch, accuracy, threads, out)
     if not plan.loads:
         return found
@@ -57,45 +56,44 @@ def evaluate_loaded_quality(
     moving = {p for load in plan.loads.values() for p in load.parameters} & found.conditions.keys()
     totals = {p: sensitivity(names, p) for p in moving}
     try:
-        slopes = evaluate_loaded([*totals.values()], given, branch, accuracy, threads, None)
+        slopes = evaluate_loaded([*totals.values()], given, branch, accuracy, threads)
     except ValueError as error:
         raise ValueError(f"quality of {names}: not available under a load; " + message_of(error)) from None
     partial = values([*by_force.values()], held, branch, threads=threads)
     bound = np.asarray(found.error_bound)
     for name, slope in by_force.items():
-        off = _error_of(plan.loads[name], numbers, branch, threads)
-        bound = bound + np.abs(partial[slope]) * off
+        bound = bound + np.abs(partial[slope]) * forces[name][1]
     bound = bound.reshape(np.shape(found.value))
-    value = evaluate_loaded(names, given, branch, accuracy, threads, None)
+    value = evaluate_loaded(names, given, branch, accuracy, threads)
     moved = {p: conditions_of(value, numbers[p], slopes[slope]) for p, slope in totals.items()}
     plain = float(bound) if np.ndim(value) == 0 else np.array(bound)
     return Quality(value, {**found.conditions, **moved}, plain, digits_of(value, bound, np.shape(value)))
 
 
-def _error_of(load: Load, numbers: Mapping[str, Any], branch: int, threads: int | None) -> Array:
-    """The error bound of a force from a table."""
-    theta = np.atleast_1d(numeric("theta", numbers["theta"], ("quality",)))
+def _force_and_error(
+    load: Load, numbers: Mapping[str, Any], branch: int, threads: int | None
+) -> tuple[Any, Array]:
+    """A force from a table, a number at a point, and its error bound."""
+    theta = np.asarray(numeric("theta", numbers["theta"], ("quality",)))
     if isinstance(load, TableOverTheta):
         room = 4.0 * ROUNDED_ONCE * (np.abs(theta) + load.period)
         here, *beside = (load.both(theta + side * room)[0] for side in (0.0, -1.0, 1.0))
-        return _largest(here, beside) + ROUNDINGS * ROUNDED_ONCE * _size(load.table)
+        return here[()], _largest(here, beside) + ROUNDINGS * ROUNDED_ONCE * _size(load.table)
     assert isinstance(load, OverY)
-    lengths = {n: np.atleast_1d(numeric(n, numbers[n], ("quality",))) for n in LENGTHS}
-    given = {**dict.fromkeys(MOTION), **lengths, "theta": theta}
+    given = {**dict.fromkeys(MOTION), **{n: numbers[n] for n in LENGTHS}, "theta": theta}
     names = ["Y", *([load.centre] if isinstance(load, OverStroke) else [])]
     places = evaluate_quality(names, given, branch, "standard", threads, None)
     motion = values(list(load.motion()), given, branch, threads=threads)
-    x, speeds = load.along(motion), {n: numbers.get(n) for n in ("omega0", "omega", "alpha")}
-    way = way_of({n: np.atleast_1d(np.asarray(v, float)) for n, v in speeds.items() if v is not None})
+    speeds = {n: numeric(n, numbers[n], ("quality",)) for n in ("omega0", "omega", "alpha") if n in numbers}
+    x = np.asarray(load.along(motion))
     room = sum(np.asarray(one.error_bound) for one in places.values()) + 2.0 * ROUNDED_ONCE * np.abs(x)
-    if load.jumping:  # the piece that holds is known exactly
-        piece = pieces_at(load, Place(theta, [*lengths.values()], way, branch), motion)
-        here, *beside = (load.held(np.asarray(x + side * room), piece)[0] for side in (0.0, -1.0, 1.0))
-    else:
-        along = ahead(motion, way)
-        here, *beside = (load.both(np.asarray(x + side * room), along)[0] for side in (0.0, -1.0, 1.0))
+    piece = load.piece(x, ahead(motion, way_of(speeds)))
+    here, *beside = (load.held(x + side * room, piece)[0] for side in (0.0, -1.0, 1.0))
+    if not load.jumping:  # the piece is that of the exact position, which may be the next one
+        beside = [load.both(x + side * room, ahead(motion, way_of(speeds)))[0] for side in (-1.0, 1.0)]
     ways = [load.outward] if load.inward is None else [load.outward, load.inward]
-    return _largest(here, beside) + ROUNDINGS * ROUNDED_ONCE * max(map(_size, ways))
+    error = _largest(here, beside) + ROUNDINGS * ROUNDED_ONCE * max(map(_size, ways))
+    return np.nan_to_num(here)[()], error
 
 
 def _largest(here: Array, beside: Sequence[Array]) -> Array:

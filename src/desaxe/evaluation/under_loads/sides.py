@@ -24,7 +24,7 @@ def sides_of(name: str, source: Points, points: Mapping[str, Array]) -> NDArray[
     size = points["theta"].size
     points = {**{n: np.full(size, value) for n, value in source.numbers}, **points}
     side = np.zeros(size, np.int8)
-    loads = () if source.loads is None else source.loads.plan.loads.values()
+    loads = () if source.loads is None else source.loads.loads.values()
     near = np.logical_or.reduce([_near(load, points, source.branch) for load in loads])
     rows = np.flatnonzero(near)
     if rows.size:

@@ -28,7 +28,7 @@ def points_of(plan: Plan) -> Points:
 def load_costs(plan: Plan, points: int, compiled: bool) -> list[LoadCost]:
     """The costs of the loads of a grid."""
     step, sizes = points_of(plan), {name: axis.size for name, axis in plan.outer.axes.items()}
-    loads = {} if step.loads is None else step.loads.plan.loads
+    loads = {} if step.loads is None else step.loads.loads
     return [_cost(name, load, step, sizes, points, compiled) for name, load in loads.items()]
 
 

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 from ...compiler.cost import cost_of
 from ...compiler.passes.pipeline import optimise_in_steps
 from ...mechanism.inputs import INPUTS
-from ...mechanism.load_lines import NEAR_JUMP
 from ...mechanism.program import program_of, whole_program
 from ...runtime.kernels import KernelKey
 from ...runtime.request import Request
@@ -46,7 +45,7 @@ def steps_of(key: KernelKey, request: Request, inside: int) -> list[LoweringStep
     """From the whole derivation to the kernel, in operations at each point; `inside` is the kernel's."""
     fixed = key.fixed
     whole = len(whole_program().lines)
-    program = program_of(tuple(name for name in request.names if name != NEAR_JUMP), request.form)
+    program = program_of(request.names, request.form)
     _, costs = optimise_in_steps(program, dict(fixed))
     counts = [("derivation", whole), ("slice", costs[0].cost.operations)]
     names = {"fold": "fold", "number": "number", "slice": "unused"}
