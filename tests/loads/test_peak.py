@@ -25,6 +25,24 @@ def test_a_bare_function_is_searched_as_a_load_over_theta():
     assert found["status"] == 0
 
 
+@pytest.mark.parametrize("accuracy", ["standard", "extended"])
+def test_a_derivative_is_searched_where_no_second_slope_of_the_load_is_needed(accuracy):
+    load = dx.over_theta(ANGLES, FORCES)
+    found = dx.peak("T_in_wrt_ec", F_Y=load, accuracy=accuracy, **DESIGN)
+    theta = np.linspace(0.0, 2 * np.pi, 100_001)
+    swept = np.abs(dx.evaluate("T_in_wrt_ec", theta=theta, F_Y=load, **DESIGN)).max()
+    assert swept * (1 - 1e-12) <= found["value"] <= swept * (1 + 1e-6)
+    step = 1e-6
+    ahead, behind = (
+        dx.peak("T_in_wrt_ec", F_Y=load, **{**DESIGN, "AB": DESIGN["AB"] + side * step})["value"]
+        for side in (1, -1)
+    )
+    assert found["gradient"]["AB"] == pytest.approx((ahead - behind) / (2 * step), rel=1e-5)
+    for name, more in (("T_in_wrt_theta", load), ("T_in_wrt_AB", dx.over_Y([0.03, 0.06, 0.1], [0, -9, 5]))):
+        with pytest.raises(ValueError, match=f"peak of {name}: it has the slope of F_Y"):
+            dx.peak(name, F_Y=more, **DESIGN)
+
+
 def test_both_limits_at_a_jump_take_part():
     load = dx.over_theta([0.0, 1.0, 2.0], [100.0, -50.0, 10.0], kind="step")
     found = dx.peak("F_C_Y", kind="min", F_Y=load, **DESIGN)

@@ -18,7 +18,7 @@ from ..runtime.threads import run_in_blocks
 from ..support.memory import require
 from ..support.shown import shown
 from .call_cache import planned
-from .under_loads.request import LoadInputs, numeric
+from .under_loads.request import LoadInputs
 
 Array = NDArray[Any]
 
@@ -103,6 +103,12 @@ def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str])
     if number is not None:
         return np.array(number)
     return _not_wholly_bad(name, read_array(INPUTS[name], value))
+
+
+def numeric(name: str, value: Any, names: Sequence[str]) -> Any:
+    """An input as a float, or as an array of floats."""
+    number = as_number(name, value, (name,), names)
+    return as_array(name, value, (name,), names) if number is None else number
 
 
 def number_or_array(row: Input, value: Any) -> Array:

@@ -89,7 +89,8 @@ def search_under(search: Search, names: Sequence[str], designs: SearchedDesigns)
     _, plan = plan_for((name,) if own else names, {**inputs, **designs.loads})
     if own and plan.terms.get(name):
         raise ValueError(
-            f"peak of {name}: not derived under {' and '.join(plan.loads)}, of which it has the slope"
+            f"peak of {name}: it has the slope of {' and '.join(plan.loads)}, whose second one its own slope "
+            f'would need; grid("{name}", reduce={{"theta": "absmax"}}, ...) takes the largest of samples'
         )
     under = under_loads(plan, inputs, designs.branch, "standard").asked.form.under
     assert under is not None

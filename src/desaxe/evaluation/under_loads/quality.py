@@ -19,10 +19,11 @@ from ...loads.table import Table
 from ...mechanism.messages import message_of
 from ...mechanism.names import LENGTHS, sensitivity
 from ...runtime.request import several
+from ..arrays import numeric
 from ..quality import ROUNDED_ONCE, Quality, conditions_of, digits_of, evaluate_quality
 from ..values import values
 from .loaded import evaluate_loaded
-from .request import MOTION, numeric, plan_for
+from .request import MOTION, plan_for
 
 Array = NDArray[Any]
 ROUNDINGS = 8.0  # of a cubic and its distance from a knot

@@ -14,7 +14,7 @@ from ...loads.resolve import LoadPlan, plan_of, split
 from ...mechanism.load_lines import LoadLines, TurningSense, Under
 from ...mechanism.names import LENGTHS, STATUS
 from ...mechanism.own import register
-from ...runtime.request import Request, accuracy_of, as_number, is_steady, request
+from ...runtime.request import Request, accuracy_of, is_steady, request
 from ...support.forks import IMPORTS
 from ...support.recent import Recent
 
@@ -146,17 +146,6 @@ def _sense(given: Mapping[str, Any]) -> TurningSense:
     speeds = [name for name in ("omega", "omega0") if given.get(name) is not None]
     start = "alpha" if speeds == ["omega"] and given.get("alpha") is not None else 0.0
     return TurningSense(speeds[0] if speeds else 1.0, start)
-
-
-def numeric(name: str, value: Any, names: Sequence[str]) -> Any:
-    """An input as a float, or as an array of floats."""
-    number = as_number(name, value, (name,), names)
-    if number is not None:
-        return number
-    with IMPORTS:
-        from ..arrays import as_array
-
-    return as_array(name, value, (name,), names)
 
 
 def _finite_or_zero(value: Any) -> Any:
