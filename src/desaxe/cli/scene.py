@@ -101,7 +101,6 @@ def add_compile(commands: Any) -> None:
     parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
     parser.add_argument("-o", metavar="PLACE", dest="place", required=True, help="the file, or its folder")
     parser.add_argument("--to", metavar="LANGUAGE", default="numba", help="language (default: numba)")
-    parser.add_argument("--fmi", type=int, choices=(3, 2), default=3, help="version of an FMU (default: 3)")
     parser.add_argument(
         "--input", choices=("torque", "omega"), default="torque", help="what drives an FMU (default: torque)"
     )
@@ -121,9 +120,8 @@ def _compile(options: argparse.Namespace) -> int:
     from ..scenes.export.command import run_compile
 
     return run_compile(
-        options.scene, options.place, options.to, options.check, options.overwrite,
-        options.fmi, options.input,
-    )  # fmt: skip
+        options.scene, options.place, options.to, options.check, options.overwrite, options.input
+    )
 
 
 def add_explore(commands: Any) -> None:

@@ -248,19 +248,18 @@ class Machine(Mapping[str, Any]):
         *,
         check: bool = False,
         overwrite: bool = False,
-        fmi: int = 3,
         input: str = "torque",
         **more: Any,
     ) -> Any:
         """`desaxe.compile` of the scene of this machine: source code that needs nothing of desaxe; its path.
 
-        path, to, check, overwrite, fmi, input as there, others as in `scene`. The code
+        path, to, check, overwrite, input as there, others as in `scene`. The code
         takes and gives SI units.
         """
         with IMPORTS:
             from ..scenes.export.compile import compile
 
-        options: Any = {"check": check, "overwrite": overwrite, "fmi": fmi, "input": input}
+        options: Any = {"check": check, "overwrite": overwrite, "input": input}
         return compile(self.scene(outputs, **more), path, to, **options)
 
     def report(

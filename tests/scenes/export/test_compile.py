@@ -320,7 +320,7 @@ def test_every_number_of_a_table_is_in_the_digest(to, tmp_path):
             text = "".join(
                 p.read_text(encoding="utf-8") for p in sorted(path.parent.rglob("*")) if p.is_file()
             )
-        digests |= set(re.findall(r'scene ([0-9a-f]{16})|Token="\{(.*?)\}', text))
+        digests |= set(re.findall(r'scene ([0-9a-f]{16})|guid="\{(.*?)\}', text))
     assert len(digests) == 2
 
 

@@ -14,14 +14,13 @@ def run_compile(
     to: str,
     check: bool,
     overwrite: bool,
-    fmi: int,
     drive: str,
 ) -> int:
     """Write the files, or with `check` compare them; return the exit status."""
-    if to != "fmu" and (fmi, drive) != (3, "torque"):
-        raise ValueError("--fmi and --input are for --to fmu")
+    if to != "fmu" and drive != "torque":
+        raise ValueError("--input is for --to fmu")
     scene = scene_of(source)
-    made = generated(scene, Path(place), to, fmi, drive)
+    made = generated(scene, Path(place), to, drive)
     if check:
         lines = [*map(printable, made.diff())]
         print(*lines, *([] if lines else [f"{printable(place)}: fresh"]), sep="\n")

@@ -37,7 +37,6 @@ def compile(
     *,
     check: bool = False,
     overwrite: bool = False,
-    fmi: int = 3,
     input: str = "torque",
 ) -> Path:
     """Write the outputs of a scene as source code of its own, which needs nothing of desaxe.
@@ -55,8 +54,8 @@ def compile(
     jax         a module with a function for each output and `evaluate(**inputs)`; its derivatives are the
                 derived ones
     javascript  an ES module and its types
-    fmu         FILE.fmu, a Functional Mock-up Unit (extra `fmu`): model exchange and co-simulation of
-                FMI 3.0, or with `fmi=2` 2.0. A torque moves the crank; `input="omega"`: its speed is given
+    fmu         FILE.fmu, a Functional Mock-up Unit of FMI 2.0 (extra `fmu`): model exchange and
+                co-simulation. A torque moves the crank; `input="omega"`: its speed is given
 
     A path that ends as the language's files do is the file; any other is a folder, whose last part is the
     name. The same scene gives the same bytes.
@@ -74,7 +73,7 @@ def compile(
     """
     place = as_path("path", path)
     yes_or_no(check=check, overwrite=overwrite)
-    made = generated(scene if isinstance(scene, Scene) else scene_of(scene), place, to, fmi, input)
+    made = generated(scene if isinstance(scene, Scene) else scene_of(scene), place, to, input)
     if not check:
         made.write(overwrite)
     elif stale := made.stale():
@@ -96,12 +95,12 @@ def require_fmu(place: Path) -> None:
     require_name(place.stem, place, words_of("c").modules)
 
 
-def generated(scene: Scene, place: Path, to: str = "numba", fmi: int = 3, drive: str = "torque") -> Generated:
+def generated(scene: Scene, place: Path, to: str = "numba", drive: str = "torque") -> Generated:
     """The files of a scene in a language; nothing is written."""
     with using(scene.content.definitions):
         if to == "fmu":
             require_fmu(place)
-            return fmu_of(scene, place, fmi, drive)
+            return fmu_of(scene, place, drive)
         return _generated(scene, place, to)
 
 

@@ -1,8 +1,9 @@
 """The header and the source of a module in C99."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from ....support.template import filled
+from ...operations import Content
 from ...passes.trigonometry import Trigonometry, expand_trigonometry
 from ...passes.value_numbering import value_numbering
 from ...program import Line, Program
@@ -174,20 +175,12 @@ class _Source:
                 CPLUSPLUS,
                 PRAGMAS,
                 *self._helpers(functions),
-                *self._content(),
+                *tables_text(self.module.tables),
                 functions,
                 *tables,
                 "",
             ]
         )
-
-    def _content(self) -> list[str]:
-        """The content of the tables that are looked into."""
-        rows = []
-        for name, column in arrays_of(self.module.tables).items():
-            rows += [f"static const double {name}[] = {{", *(f"  {row}" for row in numbers(column)), "};"]
-        sizes = [f"static const int64_t {n}_n = {len(x)};" for n, (x, _) in self.module.tables.items()]
-        return [*rows, *sizes, *([""] if rows else [])]
 
     # -- what is called --
 
@@ -347,6 +340,15 @@ def _loop(call: str, given: str, results: list[str], indent: int) -> list[str]:
         *(f"{pad}  {result}[k] = value[{index}];" for index, result in enumerate(results)),
         f"{pad}}}",
     ]
+
+
+def tables_text(tables: Mapping[str, Content]) -> list[str]:
+    """The content of the tables that are looked into."""
+    rows = []
+    for name, column in arrays_of(tables).items():
+        rows += [f"static const double {name}[] = {{", *(f"  {row}" for row in numbers(column)), "};"]
+    rows += [f"static const int64_t {name}_n = {len(knots)};" for name, (knots, _) in tables.items()]
+    return [*rows, *([""] if rows else [])]
 
 
 def sine_and_cosine(constants: Trigonometry) -> str:

@@ -12,6 +12,7 @@ from ..protocol import Solver
 from .functions import static_function
 
 HEADER = file_text(__package__, "motion", "header.h")
+RUNGE_KUTTA = file_text(__package__, "motion", "runge_kutta.c")  # of a `motion_at`
 
 
 def step_texts(name: str, motion: Solver, names: Sequence[str]) -> list[str]:
@@ -32,7 +33,9 @@ def step_texts(name: str, motion: Solver, names: Sequence[str]) -> list[str]:
         "LINES": "\n".join(f"  {line}" for line in lines),
     }
     texts = [
-        file_text(__package__, "motion", f"{part}.c") for part in ("at", way, "runge_kutta", f"{way}_step")
+        *(file_text(__package__, "motion", f"{part}.c") for part in ("at", way)),
+        RUNGE_KUTTA,
+        file_text(__package__, "motion", f"{way}_step.c"),
     ]
     made = [filled(text, **told) for text in texts]
     return [static_function("motion", form.program, form.program.inputs, 1, 1), *made]

@@ -12,6 +12,27 @@ static fmi2Status refuse(fmi2Component c, const char *text) {
   return fmi2Error;
 }
 
+static Values *values_of(fmi2Component c) {
+  return &((Model *)c)->now;
+}
+
+/* The values, outputs up to date. */
+static Values *updated(fmi2Component c) {
+  Values *x = values_of(c);
+  if (!x->known) {
+    (void)update(x);
+  }
+  return x;
+}
+
+static int is_parameter(fmi2ValueReference place) {
+  return place >= FIRST_PARAMETER && place < FIRST_PARAMETER + N_PARAMETERS;
+}
+
+static int is_input(fmi2ValueReference place) {
+  return place >= FIRST_INPUT && place < FIRST_INPUT + N_INPUTS;
+}
+
 FMI2_Export const char *fmi2GetTypesPlatform(void) {
   return fmi2TypesPlatform;
 }
@@ -52,16 +73,18 @@ FMI2_Export void fmi2FreeInstance(fmi2Component c) {
 
 FMI2_Export fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance,
                                            fmi2Real start, fmi2Boolean has_stop, fmi2Real stop) {
-  Values *x = &((Model *)c)->now;
+  Values *x = values_of(c);
   (void)has_stop, (void)stop;
-  set_tolerance(x, has_tolerance != fmi2False, tolerance);
+  if (has_tolerance != fmi2False && tolerance < x->tolerance) {
+    x->tolerance = tolerance > 3e-14 ? tolerance : 3e-14;
+  }
   x->v[0] = start;
   x->known = 0;
   return fmi2OK;
 }
 
 FMI2_Export fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-  Values *x = &((Model *)c)->now;
+  Values *x = values_of(c);
   if (x->mode != SETTING) {
     return refuse(c, "fmi2EnterInitializationMode: not in this state");
   }
@@ -71,7 +94,7 @@ FMI2_Export fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
 }
 
 FMI2_Export fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-  Values *x = &((Model *)c)->now;
+  Values *x = values_of(c);
   if (x->mode != INITIALISING) {
     return refuse(c, "fmi2ExitInitializationMode: not in this state");
   }
@@ -83,12 +106,12 @@ FMI2_Export fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
 }
 
 FMI2_Export fmi2Status fmi2Terminate(fmi2Component c) {
-  ((Model *)c)->now.mode = OVER;
+  values_of(c)->mode = OVER;
   return fmi2OK;
 }
 
 FMI2_Export fmi2Status fmi2Reset(fmi2Component c) {
-  Values *x = &((Model *)c)->now;
+  Values *x = values_of(c);
   const int co_simulation = x->co_simulation;
   start_values(x);
   x->co_simulation = co_simulation;
@@ -98,19 +121,35 @@ FMI2_Export fmi2Status fmi2Reset(fmi2Component c) {
 /* ---- variables ---- */
 
 FMI2_Export fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference places[], size_t n, fmi2Real values[]) {
-  return get_values((Model *)c, places, n, values) ? fmi2OK : fmi2Error;
+  const Values *x = updated(c);
+  for (size_t k = 0; k < n; k++) {
+    if (places[k] >= N_VALUES) {
+      return refuse(c, "there is no variable with this value reference");
+    }
+    values[k] = x->v[places[k]];
+  }
+  return fmi2OK;
 }
 
 FMI2_Export fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference places[], size_t n,
                                    const fmi2Real values[]) {
-  return set_values((Model *)c, places, n, values) ? fmi2OK : fmi2Error;
+  Values *x = values_of(c);
+  for (size_t k = 0; k < n; k++) {
+    if (!is_input(places[k]) && !(is_parameter(places[k]) && x->mode <= INITIALISING)) {
+      return refuse(c, is_parameter(places[k]) ? "a parameter is set before initialisation mode is left"
+                                               : "only parameters and inputs can be set");
+    }
+    x->v[places[k]] = values[k];
+  }
+  x->known = 0;
+  return fmi2OK;
 }
 
 FMI2_Export fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference places[], size_t n,
                                       fmi2Integer values[]) {
   for (size_t k = 0; k < n; k++) {
     double value;
-    if (!get_values((Model *)c, &places[k], 1, &value)) {
+    if (fmi2GetReal(c, &places[k], 1, &value) != fmi2OK) {
       return fmi2Error;
     }
     values[k] = (fmi2Integer)value;
@@ -135,15 +174,46 @@ SET_UNUSED(Integer, fmi2Integer)
 UNUSED(Boolean, fmi2Boolean)
 UNUSED(String, fmi2String)
 
+/* By inputs, states (parameters before initialisation mode is left, as the table of knowns has it) and time. */
+FMI2_Export fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference of[], size_t n_of,
+                                                    const fmi2ValueReference by[], size_t n_by,
+                                                    const fmi2Real seed[], fmi2Real slopes[]) {
+  const Values *x = updated(c);
+  double seeds[N_VALUES] = {0.0};
+  for (size_t k = 0; k < n_by; k++) {
+    const int is_state = HAS_STATES && (by[k] == THETA || by[k] == OMEGA) && x->mode > INITIALISING;
+    if (!is_state && !is_input(by[k]) && !is_parameter(by[k]) && by[k] != 0) {
+      return refuse(c, "a directional derivative is by inputs, continuous states, parameters and time");
+    }
+    seeds[by[k]] += seed[k];
+  }
+  differentiate(x, seeds);
+  for (size_t k = 0; k < n_of; k++) {
+    if (of[k] >= N_VALUES) {
+      return refuse(c, "there is no variable with this value reference");
+    }
+    slopes[k] = seeds[of[k]];
+  }
+  return fmi2OK;
+}
+
 /* ---- the state of an instance ---- */
 
+static fmi2Status copy_to(fmi2Component c, const void *from, fmi2FMUstate *state) {
+  *state = *state != NULL ? *state : malloc(sizeof(Values));
+  if (*state == NULL) {
+    return refuse(c, "a state of the FMU: no memory");
+  }
+  memcpy(*state, from, sizeof(Values));
+  return fmi2OK;
+}
+
 FMI2_Export fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
-  *state = copy_of(&((Model *)c)->now, (Values *)*state);
-  return *state != NULL ? fmi2OK : refuse(c, "fmi2GetFMUstate: no memory");
+  return copy_to(c, values_of(c), state);
 }
 
 FMI2_Export fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-  memcpy(&((Model *)c)->now, state, sizeof(Values));
+  memcpy(values_of(c), state, sizeof(Values));
   return fmi2OK;
 }
 
@@ -170,74 +240,97 @@ FMI2_Export fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state
 
 FMI2_Export fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size,
                                                fmi2FMUstate *state) {
-  if (size != sizeof(Values)) {
-    return refuse(c, "fmi2DeSerializeFMUstate: not a state of this model");
-  }
-  *state = copy_of(bytes, (Values *)*state);
-  return *state != NULL ? fmi2OK : refuse(c, "fmi2DeSerializeFMUstate: no memory");
-}
-
-FMI2_Export fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference of[], size_t n_of,
-                                                    const fmi2ValueReference by[], size_t n_by,
-                                                    const fmi2Real seed[], fmi2Real found[]) {
-  return directional((Model *)c, of, n_of, by, n_by, seed, found) ? fmi2OK : fmi2Error;
+  return size == sizeof(Values) ? copy_to(c, bytes, state)
+                                : refuse(c, "fmi2DeSerializeFMUstate: not a state of this model");
 }
 
 /* ---- model exchange ---- */
 
+static void follow(Values *x) {
+  if (!HAS_STATES && !x->co_simulation) {
+    x->v[THETA] = followed(x);
+    follow_from_here(x);
+  }
+  x->known = 0;
+}
+
 FMI2_Export fmi2Status fmi2EnterEventMode(fmi2Component c) {
-  enter_events(&((Model *)c)->now);
+  follow(values_of(c));
+  values_of(c)->mode = EVENTS;
   return fmi2OK;
 }
 
 FMI2_Export fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info) {
-  Values *x = &((Model *)c)->now;
+  Values *x = values_of(c);
   const double before = x->v[OMEGA];
   meet_events((Model *)c);
-  info->newDiscreteStatesNeeded = fmi2False;
+  memset(info, 0, sizeof *info);
   info->terminateSimulation = x->ended != 0;
-  info->nominalsOfContinuousStatesChanged = fmi2False;
   info->valuesOfContinuousStatesChanged = x->v[OMEGA] < before || x->v[OMEGA] > before;
-  info->nextEventTimeDefined = fmi2False;
-  info->nextEventTime = 0.0;
   return fmi2OK;
 }
 
 FMI2_Export fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
-  enter_continuous(&((Model *)c)->now);
+  Values *x = values_of(c);
+  x->base[2] = HAS_STATES ? 0.0 : x->v[OMEGA];
+  x->mode = CONTINUOUS;
+  x->known = 0;
   return fmi2OK;
 }
 
 FMI2_Export fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean keeps, fmi2Boolean *event,
                                                    fmi2Boolean *terminate) {
   (void)keeps;
-  step_completed(&((Model *)c)->now);
+  follow(values_of(c));
   *event = fmi2False;
   *terminate = fmi2False;
   return fmi2OK;
 }
 
 FMI2_Export fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
-  Values *x = &((Model *)c)->now;
+  Values *x = values_of(c);
   x->v[0] = time;
   x->known = 0;
   return fmi2OK;
 }
 
 FMI2_Export fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real states[], size_t n) {
-  return set_states((Model *)c, states, n) ? fmi2OK : fmi2Error;
-}
-
-FMI2_Export fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real rates_now[], size_t n) {
-  return get_rates((Model *)c, rates_now, n) ? fmi2OK : fmi2Error;
-}
-
-FMI2_Export fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
-  return get_indicators((Model *)c, z, n) ? fmi2OK : fmi2Error;
+  Values *x = values_of(c);
+  if (n == 2 && HAS_STATES) {
+    memcpy(&x->v[THETA], states, 2 * sizeof *states);
+    x->known = 0;
+  }
+  return n == (HAS_STATES ? 2 : 0) ? fmi2OK : fmi2Error;
 }
 
 FMI2_Export fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real states[], size_t n) {
-  return get_states((Model *)c, states, n) ? fmi2OK : fmi2Error;
+  const Values *x = updated(c);
+  if (n == 2 && HAS_STATES) {
+    memcpy(states, &x->v[THETA], 2 * sizeof *states);
+  }
+  return n == (HAS_STATES ? 2 : 0) ? fmi2OK : fmi2Error;
+}
+
+FMI2_Export fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real rates[], size_t n) {
+  Values *x = values_of(c);
+  const int status = update(x);
+  if (status != 0 && n > 0) {
+    char text[160];
+    snprintf(text, sizeof text, "no acceleration at t = %.9g, theta = %.9g: %s", x->v[0], x->v[THETA], REASONS[status]);
+    return refuse(c, text);
+  }
+  if (n == 2 && HAS_STATES) {
+    memcpy(rates, &x->v[DER_THETA], 2 * sizeof *rates);
+  }
+  return n == (HAS_STATES ? 2 : 0) ? fmi2OK : fmi2Error;
+}
+
+FMI2_Export fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
+  const Values *x = updated(c);
+  if (n == N_EVENTS) {
+    indicators(x, &x->v[THETA], z);
+  }
+  return n == N_EVENTS ? fmi2OK : fmi2Error;
 }
 
 FMI2_Export fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real sizes[], size_t n) {
@@ -263,12 +356,12 @@ FMI2_Export fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2V
 }
 
 FMI2_Export fmi2Status fmi2DoStep(fmi2Component c, fmi2Real start, fmi2Real h, fmi2Boolean keeps) {
-  Model *m = (Model *)c;
+  const Values *x = values_of(c);
   (void)keeps;
-  if (m->now.mode != STEPPING || !do_step(m, start, h)) {
+  if (x->mode != STEPPING || !do_step((Model *)c, start, h)) {
     return fmi2Error;
   }
-  return m->now.ended ? fmi2Discard : fmi2OK; /* and fmi2Terminated says why */
+  return x->ended ? fmi2Discard : fmi2OK; /* and fmi2Terminated says why */
 }
 
 FMI2_Export fmi2Status fmi2CancelStep(fmi2Component c) {
@@ -277,24 +370,23 @@ FMI2_Export fmi2Status fmi2CancelStep(fmi2Component c) {
 
 FMI2_Export fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status *value) {
   (void)kind;
-  *value = ((Model *)c)->now.ended ? fmi2Discard : fmi2OK;
+  *value = values_of(c)->ended ? fmi2Discard : fmi2OK;
   return fmi2OK;
 }
 
 FMI2_Export fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value) {
-  (void)kind;
-  *value = ((Model *)c)->now.v[0];
+  *value = values_of(c)->v[0];
   return kind == fmi2LastSuccessfulTime ? fmi2OK : fmi2Discard;
+}
+
+FMI2_Export fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value) {
+  *value = values_of(c)->ended ? fmi2True : fmi2False;
+  return kind == fmi2Terminated ? fmi2OK : fmi2Discard;
 }
 
 FMI2_Export fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value) {
   (void)c, (void)kind, (void)value;
   return fmi2Discard;
-}
-
-FMI2_Export fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value) {
-  *value = ((Model *)c)->now.ended ? fmi2True : fmi2False;
-  return kind == fmi2Terminated ? fmi2OK : fmi2Discard;
 }
 
 FMI2_Export fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String *value) {

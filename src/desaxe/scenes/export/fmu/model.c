@@ -3,21 +3,18 @@
 typedef enum { SETTING, INITIALISING, EVENTS, CONTINUOUS, STEPPING, OVER } Mode;
 
 typedef struct {
-  double v[N_VALUES];   /* every variable at its value reference */
-  double first, last;   /* limit angles around theta */
-  Loads loads;
-  double way;           /* with friction: the sign of the speed, 0 at rest */
-  double base[3];       /* time, angle and speed from which a given speed is followed */
-  double h;             /* the last step of the integrator */
-  double tolerance;
+  double v[N_ALL];     /* every variable at its value reference; then the limit angles, and what loads hold */
+  double way;          /* with friction: the sign of the speed, 0 at rest */
+  double base[3];      /* time, angle and speed from which a given speed is followed */
+  double h, tolerance; /* the last step of co-simulation; what it may err by, relative to the speed */
   Mode mode;
-  int co_simulation, early; /* whether a step may return early */
-  int known, ended;         /* whether outputs belong to the inputs; whether a limit angle is reached */
+  int co_simulation;
+  int known, ended;    /* whether outputs belong to the inputs; whether a limit angle is reached */
 } Values;
 
 typedef struct {
   Values now;
-  void *host;       /* of the messages */
+  void *host; /* of the messages */
   Callback log;
   char name[128];
 } Model;
@@ -26,38 +23,109 @@ static void tell(Model *m, int failed, const char *text);
 
 static void start_values(Values *x) {
   memset(x, 0, sizeof *x);
-  for (int k = 0; k < N_VALUES; k++) {
-    x->v[k] = START[k];
-  }
+  memcpy(x->v, START, sizeof START);
   x->tolerance = 1e-10;
   x->way = 1.0;
-  x->first = -(double)INFINITY;
-  x->last = (double)INFINITY;
+  x->v[FIRST_ANGLE] = -(double)INFINITY;
+  x->v[LAST_ANGLE] = (double)INFINITY;
 }
 
-/* The acceleration while the crank turns one way; returns its status. */
-static int alpha_of(const Values *x, const double state[2], double way, double *alpha) {
-  double v[N_VALUES], out[1];
+/* ---- loads from tables, held between two kinks ---- */
+
+/* Add the loads to the forces; what the tables are looked up by, and their slopes, are in `looked_up`. */
+static void add_loads(double v[], double looked_up[][N_LOOKED_UP]) {
+  (void)eval_loads(v, looked_up[0]);
+  for (int k = 0; k < N_LOADS; k++) {
+    const double value = looked_up[k][VALUE];
+    v[LOADS[k].force] += value == value ? value : 0.0;
+  }
+}
+
+/* Hold each load to the pieces ahead of the angle, for a crank that turns one way. */
+static void hold_loads(double v[], double way) {
+  double at[N_ALL], looked_up[N_LOADS + 1][N_LOOKED_UP];
+  memcpy(at, v, sizeof at);
+  at[THETA] += HAS_STATES ? 1e-9 * way : 0.0;
+  for (int k = 0; k < N_LOADS; k++) {
+    const Load *load = &LOADS[k];
+    const double period = load->period;
+    v[load->held] = period > 0.0 ? period * floor((at[THETA] - load->knots[0]) / period) : 0.0;
+    at[load->held] = v[load->held];
+  }
+  (void)eval_loads(at, looked_up[0]);
+  for (int k = 0; k < N_LOADS; k++) {
+    const Load *load = &LOADS[k];
+    const double ahead = way < 0.0 ? -looked_up[k][RISES] : looked_up[k][RISES];
+    double *held = &v[load->held], first = load->period > 0.0 ? 1.0 : 0.0, last = load->n;
+    const double piece = looked_up[k][PIECE] < first ? first : looked_up[k][PIECE];
+    for (int j = 0; j < load->n_kinks; j++) {
+      const double knot = load->kinks[j];
+      first = knot < piece && knot + 1.0 > first ? knot + 1.0 : first;
+      last = knot >= piece && knot < last ? knot : last;
+    }
+    held[1] = first;
+    held[2] = last;
+    held[3] = load->two_ways && ahead < 0.0 ? load->n + 1.0 : 0.0;
+  }
+}
+
+/* Event indicators of the loads: distances to the kinks around, and the slider's way. */
+static void load_indicators(const Values *x, const double state[2], double z[]) {
+  double v[N_ALL], looked_up[N_LOADS + 1][N_LOOKED_UP];
   memcpy(v, x->v, sizeof v);
-  const double first = x->first + EDGE, last = x->last - EDGE;
-  v[THETA] = state[0] < first ? first : (state[0] > last ? last : state[0]); /* trial steps go beyond */
-  v[OMEGA] = state[1];
-  add_loads(&x->loads, v, NULL);
-  const int status = eval_motion(v, way, out);
-  *alpha = status == 0 ? out[0] : (double)NAN;
-  return status;
+  v[THETA] = state[0];
+  (void)eval_loads(v, looked_up[0]);
+  for (int k = 0; k < N_LOADS; k++, z += 3) {
+    const Load *load = &LOADS[k];
+    const double *held = &v[load->held], at = looked_up[k][AT], inward = held[3] > 0.0 ? -1.0 : 1.0;
+    const int first = (int)held[1], last = (int)held[2];
+    const double end = load->period > 0.0 ? load->knots[0] + load->period : (double)INFINITY;
+    const double right = last < load->n ? load->knots[last] : end;
+    z[0] = first > 0 ? at - load->knots[first - 1] : 1.0;
+    z[1] = right < (double)INFINITY ? right - at : 1.0;
+    z[2] = load->two_ways ? inward * (x->way < 0.0 ? -1.0 : 1.0) * looked_up[k][RISES] : 1.0;
+  }
 }
 
-static void hold(Values *x, double way) {
-  const double limits[2] = {x->first, x->last};
-  hold_loads(&x->loads, x->v, limits, way);
+/* The dead centre that a load needs and that the lengths do not have; NULL where there is none such. */
+static const char *missing_dead_centre(const double v[]) {
+  double looked_up[N_LOADS + 1][N_LOOKED_UP];
+  (void)eval_loads(v, looked_up[0]);
+  for (int k = 0; k < N_LOADS; k++) {
+    if (LOADS[k].centre != NULL && !(looked_up[k][AT] < (double)INFINITY)) {
+      return LOADS[k].centre;
+    }
+  }
+  return NULL;
+}
+
+/* ---- the motion ---- */
+
+/* The acceleration, out[0], while the crank turns one way; returns its status. */
+static int motion_at(double torque, double theta, double omega, double way, const double in[], double out[]) {
+  double v[N_ALL], looked_up[N_LOADS + 1][N_LOOKED_UP];
+  const double first = in[FIRST_ANGLE] + EDGE, last = in[LAST_ANGLE] - EDGE;
+  memcpy(v, in, sizeof v);
+  v[THETA] = theta < first ? first : (theta > last ? last : theta); /* trial steps go beyond */
+  v[OMEGA] = omega;
+  v[TORQUE] = torque;
+  add_loads(v, looked_up);
+  return eval_motion(v, way, out);
+}
+
+/*STEP*/
+
+static int alpha_of(const Values *x, const double state[2], double way, double *alpha) {
+  const int status = motion_at(x->v[TORQUE], state[0], state[1], way, x->v, alpha);
+  *alpha = status == 0 ? *alpha : (double)NAN;
+  return status;
 }
 
 /* Whether a crank at rest starts one way. */
 static int starts(Values *x, double way) {
   const double rest[2] = {x->v[THETA], 0.0};
   double alpha;
-  hold(x, way);
+  hold_loads(x->v, way);
   return alpha_of(x, rest, way, &alpha) == 0 && alpha * way > 0.0;
 }
 
@@ -70,25 +138,26 @@ static int has_way(const Values *x) {
 static double way_of(Values *x) {
   const double speed = x->v[OMEGA], way = speed < 0.0 ? -1.0 : 1.0;
   if (!has_way(x) || fabs(speed) > STANDS) {
-    hold(x, way);
+    hold_loads(x->v, way);
     return has_way(x) ? way : 1.0;
   }
   return starts(x, 1.0) ? 1.0 : (starts(x, -1.0) ? -1.0 : 0.0);
 }
 
-/* Event indicators: distances to the limit angles; the speed, or what holds the crank at rest. */
+/* Event indicators: distances to the limit angles; the speed, or what holds the crank at rest; the loads. */
 static void indicators(const Values *x, const double state[2], double z[N_EVENTS]) {
-  z[0] = x->first > -(double)INFINITY ? state[0] - x->first - EDGE : 1.0;
-  z[1] = x->last < (double)INFINITY ? x->last - EDGE - state[0] : 1.0;
+  const double first = x->v[FIRST_ANGLE], last = x->v[LAST_ANGLE];
+  z[0] = first > -(double)INFINITY ? state[0] - first - EDGE : 1.0;
+  z[1] = last < (double)INFINITY ? last - EDGE - state[0] : 1.0;
   if (HAS_STATES) {
-    load_indicators(&x->loads, state, &z[3]);
+    load_indicators(x, state, &z[3]);
     z[AT_REST] = has_way(x) ? x->way * state[1] : 1.0;
     if (has_way(x) && x->way == 0.0) {
       double ahead, back;
       Values trial = *x;
-      hold(&trial, 1.0);
+      hold_loads(trial.v, 1.0);
       const double up = alpha_of(&trial, state, 1.0, &ahead) == 0 ? -ahead : 1.0;
-      hold(&trial, -1.0);
+      hold_loads(trial.v, -1.0);
       const double down = alpha_of(&trial, state, -1.0, &back) == 0 ? back : 1.0;
       z[AT_REST] = up < down ? up : down;
     }
@@ -108,14 +177,13 @@ static void follow_from_here(Values *x) {
 
 /* Everything that follows from states, inputs and parameters; returns the status. */
 static int update(Values *x) {
-  double alpha = 0.0, v[N_VALUES], out[N_OUTPUTS + 1];
+  double alpha = 0.0, v[N_ALL], out[N_OUTPUTS + 1], looked_up[N_LOADS + 1][N_LOOKED_UP];
   int status = 0;
   if (x->mode <= INITIALISING) {
     x->v[THETA] = x->v[THETA0];
     if (HAS_STATES) {
       x->v[OMEGA] = x->v[OMEGA_START];
     }
-    find_kinks(&x->loads, x->v, x->co_simulation);
     x->way = way_of(x);
   } else if (!HAS_STATES) {
     x->v[THETA] = x->co_simulation ? x->v[THETA] : followed(x);
@@ -129,41 +197,38 @@ static int update(Values *x) {
     x->v[DER_OMEGA] = alpha;
   }
   memcpy(v, x->v, sizeof v);
-  add_loads(&x->loads, v, NULL);
+  add_loads(v, looked_up);
   const int other = eval_outputs(v, alpha, out);
   for (int k = 0; k < N_OUTPUTS; k++) {
     x->v[OUTPUTS[k]] = out[k];
   }
-  indicators(x, &x->v[THETA], &x->v[INDICATORS]);
   x->known = 1;
   return HAS_STATES ? status : other;
 }
 
 /* The limit angles around theta: infinite where the crank turns fully. Returns 0 where it cannot be assembled. */
 static int find_limits(Values *x) {
-  double found[6];
+  double angles[5];
   const double turn = 6.283185307179586, theta = x->v[THETA], ec = x->v[EC];
-  int status = eval_limits(x->v, found);
-  x->first = -(double)INFINITY;
-  x->last = (double)INFINITY;
+  const int status = eval_limits(x->v, angles);
   if (status == 0) {
     return 1;
   }
-  if (found[0] == 0.0 && found[1] == turn) { /* a change point: the arcs between its quarters */
+  if (angles[0] == 0.0 && angles[1] == turn) { /* a change point: the arcs between its quarters */
     const double quarter = 1.5707963267948966;
-    found[0] = ec < 0.0 ? -quarter : quarter;
-    found[1] = found[0] + turn;
+    angles[0] = ec < 0.0 ? -quarter : quarter;
+    angles[1] = angles[0] + turn;
     if (ec == 0.0) {
-      found[0] = -quarter;
-      found[1] = found[2] = quarter;
-      found[3] = 3.0 * quarter;
+      angles[0] = -quarter;
+      angles[1] = angles[2] = quarter;
+      angles[3] = 3.0 * quarter;
     }
   }
   for (int k = 0; k < 4; k += 2) {
-    const double turns = turn * floor((theta - 0.5 * (found[k] + found[k + 1])) / turn + 0.5);
-    if (found[k] + turns < theta && theta < found[k + 1] + turns) {
-      x->first = found[k] + turns;
-      x->last = found[k + 1] + turns;
+    const double turns = turn * floor((theta - 0.5 * (angles[k] + angles[k + 1])) / turn + 0.5);
+    if (angles[k] + turns < theta && theta < angles[k + 1] + turns) {
+      x->v[FIRST_ANGLE] = angles[k] + turns;
+      x->v[LAST_ANGLE] = angles[k + 1] + turns;
       return 1;
     }
   }
@@ -173,39 +238,34 @@ static int find_limits(Values *x) {
 /* Whether a motion can start; if not, a message says why. */
 static int is_sound(Model *m) {
   Values *x = &m->now;
-  char text[256];
+  const double *v = x->v;
+  char text[256] = "";
   for (int k = 0; k < N_CHECKS; k++) {
-    const double value = x->v[CHECKS[k].place];
+    const double value = v[CHECKS[k].place];
     if (!(fabs(value) < (double)INFINITY) || value < CHECKS[k].least) {
       snprintf(text, sizeof text, "%s = %.9g: expected %s", CHECKS[k].name, value, CHECKS[k].limit);
       tell(m, 1, text);
       return 0;
     }
   }
-  x->first = -(double)INFINITY;
-  x->last = (double)INFINITY;
+  x->v[FIRST_ANGLE] = -(double)INFINITY;
+  x->v[LAST_ANGLE] = (double)INFINITY;
   x->mode = INITIALISING;
-  update(x);
-  if (!find_limits(x)) {
-    snprintf(text, sizeof text, "theta0 = %.9g: with ec = %.9g, AB = %.9g, BC = %.9g it cannot be assembled there",
-             x->v[THETA], x->v[EC], x->v[LENGTH_AB], x->v[LENGTH_BC]);
-    tell(m, 1, text);
-    return 0;
-  }
-  const char *missing = missing_dead_centre(x->v);
-  if (missing != NULL) {
+  (void)update(x);
+  const int assembled = find_limits(x), status = update(x);
+  const char *missing = missing_dead_centre(v);
+  if (!assembled) {
+    snprintf(text, sizeof text, "theta0 = %.9g: with ec = %.9g, AB = %.9g, BC = %.9g it cannot be assembled there", v[THETA],
+             v[EC], v[LENGTH_AB], v[LENGTH_BC]);
+  } else if (missing != NULL) {
     snprintf(text, sizeof text, "ec = %.9g, AB = %.9g, BC = %.9g: a load is given over the distance from the %s dead centre, "
-             "and there is none", x->v[EC], x->v[LENGTH_AB], x->v[LENGTH_BC], missing);
-    tell(m, 1, text);
-    return 0;
+             "and there is none", v[EC], v[LENGTH_AB], v[LENGTH_BC], missing);
+  } else if (status == 0 && HAS_STATES && !(fabs(v[DER_OMEGA]) < (double)INFINITY)) {
+    snprintf(text, sizeof text, "nothing moves without inertia: M_eff must be > 0 where the motion starts");
+  } else if (status != 0) {
+    snprintf(text, sizeof text, "no motion can start at theta = %.9g: %s", v[THETA], REASONS[status]);
   }
-  const int status = update(x);
-  if (status == 0 && HAS_STATES && !(fabs(x->v[DER_OMEGA]) < (double)INFINITY)) {
-    tell(m, 1, "nothing moves without inertia: M_eff must be > 0 where the motion starts");
-    return 0;
-  }
-  if (status != 0) {
-    snprintf(text, sizeof text, "no motion can start at theta = %.9g: %s", x->v[THETA], REASONS[status]);
+  if (text[0] != '\0') {
     tell(m, 1, text);
     return 0;
   }
@@ -213,7 +273,7 @@ static int is_sound(Model *m) {
   return 1;
 }
 
-/* What happens at an instant: a limit angle ends the motion, friction holds or lets go. */
+/* What happens at an instant: a limit angle ends the motion, friction holds or lets go, loads have a kink. */
 static void meet_events(Model *m) {
   Values *x = &m->now;
   char text[160];
@@ -221,7 +281,7 @@ static void meet_events(Model *m) {
   indicators(x, &x->v[THETA], z);
   if ((z[0] <= 0.0 || z[1] <= 0.0) && !x->ended) {
     snprintf(text, sizeof text, "theta has reached the limit angle %.9g at t = %.9g: beyond it there is no mechanism",
-             z[0] <= 0.0 ? x->first : x->last, x->v[0]);
+             x->v[z[0] <= 0.0 ? FIRST_ANGLE : LAST_ANGLE], x->v[0]);
     tell(m, 0, text);
     x->ended = 1;
   }
@@ -234,22 +294,26 @@ static void meet_events(Model *m) {
 
 /* ---- partial derivatives: seeds of the knowns, in the places of v, become those of everything ---- */
 
-static void differentiate(Values *x, double seed[N_VALUES]) {
+static void differentiate(const Values *x, double seed[N_VALUES]) {
   double slopes[N_SLOPES + 1], rows[N_OUTPUTS + 1] = {0.0}, by_alpha[N_OUTPUTS + 1] = {0.0}, alpha = 0.0;
-  if (x->mode <= INITIALISING) {
+  double v[N_ALL], looked_up[N_LOADS + 1][N_LOOKED_UP];
+  const int through[4] = {THETA, EC, LENGTH_AB, LENGTH_BC};
+  if (x->mode <= INITIALISING && HAS_STATES) {
     seed[THETA] = seed[THETA0];
-    if (HAS_STATES) {
-      seed[OMEGA] = seed[OMEGA_START];
-    }
+    seed[OMEGA] = seed[OMEGA_START];
   } else if (!HAS_STATES) {
     seed[THETA] = seed[THETA0];
-    if (!x->co_simulation) {
+    if (x->mode > INITIALISING && !x->co_simulation) {
       seed[THETA] += 0.5 * ((x->base[2] + x->v[OMEGA]) * seed[0] + (x->v[0] - x->base[0]) * seed[OMEGA]);
     }
   }
-  double v[N_VALUES];
   memcpy(v, x->v, sizeof v);
-  seed_loads(&x->loads, v, seed);
+  add_loads(v, looked_up);
+  for (int k = 0; k < N_LOADS; k++) {
+    for (int j = 0; j < 4; j++) {
+      seed[LOADS[k].force] += seed[through[j]] != 0.0 ? looked_up[k][SLOPE + j] * seed[through[j]] : 0.0;
+    }
+  }
   (void)eval_slopes(v, HAS_STATES ? x->v[DER_OMEGA] : 0.0, slopes);
   for (int k = 0; k < N_SLOPES; k++) {
     if (SLOPES[k][1] == ALPHA) {
@@ -268,122 +332,72 @@ static void differentiate(Values *x, double seed[N_VALUES]) {
   }
 }
 
-/* ---- DOP853 (Hairer, Norsett, Wanner), for co-simulation: to the communication point, cut at events ---- */
+/* ---- co-simulation: steps of Runge and Kutta to the communication point, halved where an event lies ---- */
 
-static int rates(const Values *x, const double y[2], double f[2]) {
-  f[0] = y[1];
-  f[1] = 0.0;
-  return x->way == 0.0 ? 0 : alpha_of(x, y, x->way, &f[1]);
-}
-
-/* One step of order 8; returns its error relative to the tolerance, NaN where there is none. */
-static double trial(const Values *x, const double y[2], const double f[2], double h, double new_y[2]) {
-  double K[13][2], fifth = 0.0, third = 0.0;
-  memcpy(K[0], f, sizeof K[0]);
-  for (int s = 1; s <= 12; s++) {
-    for (int i = 0; i < 2; i++) {
-      double total = 0.0;
-      for (int j = 0; j < s; j++) {
-        total += A[s - 1][j] * K[j][i];
-      }
-      new_y[i] = y[i] + h * total;
-    }
-    if (rates(x, new_y, K[s]) != 0) {
-      return (double)NAN;
-    }
+/* A step, and the same in halves: their difference is the error, relative to the tolerance, NaN where there is none. */
+static double trial(const Values *x, double h, const double y[2], double end[2]) {
+  double whole[2] = {y[0], y[1]}, error = 0.0;
+  const double torque = x->v[TORQUE], half = 0.5 * h;
+  end[0] = y[0];
+  end[1] = y[1];
+  if (runge_kutta(h, torque, x->way, &whole[0], &whole[1], x->v) != 0 ||
+      runge_kutta(half, torque, x->way, &end[0], &end[1], x->v) != 0 ||
+      runge_kutta(half, torque, x->way, &end[0], &end[1], x->v) != 0) {
+    return (double)NAN;
   }
   for (int i = 0; i < 2; i++) {
-    double of_fifth = 0.0, of_third = 0.0;
-    for (int j = 0; j <= 12; j++) {
-      of_fifth += E5[j] * K[j][i];
-      of_third += E3[j] * K[j][i];
-    }
-    const double wide = fabs(y[i]) > fabs(new_y[i]) ? fabs(y[i]) : fabs(new_y[i]);
-    const double scale = i == 0 ? 1e-3 * x->tolerance + 3e-14 * wide
-                                : x->tolerance * (wide + 0.01 * fabs(h * f[1])) + 1e-300;
-    fifth += of_fifth / scale * (of_fifth / scale);
-    third += of_third / scale * (of_third / scale);
+    const double slip = (end[i] - whole[i]) / 15.0, wide = fabs(y[1]) > fabs(end[1]) ? fabs(y[1]) : fabs(end[1]);
+    const double scale = 0.03 * x->tolerance * (i == 0 ? 1.0 : wide + 0.01 * fabs(end[1] - y[1])) + 1e-300;
+    error = fabs(slip) / scale > error ? fabs(slip) / scale : error;
+    end[i] += slip;
   }
-  return fifth == 0.0 && third == 0.0 ? 0.0 : h * fifth / sqrt((fifth + 0.01 * third) * 2.0);
-}
-
-/* Cut a step where an event indicator changes its sign (Illinois); returns what is left of h. */
-static double cut(const Values *x, const double y[2], const double f[2], double h, int which, double new_y[2]) {
-  double z[N_EVENTS], low = 0.0, high = h, at_low, at_high, part = h;
-  indicators(x, y, z);
-  at_low = z[which] > 0.0 ? z[which] : 1e-300;
-  indicators(x, new_y, z);
-  at_high = z[which];
-  for (int k = 0; k < 60 && high - low > 1e-15 * h && at_high != 0.0; k++) {
-    part = low + (high - low) * (at_low / (at_low - at_high));
-    if (!(part > low && part < high)) {
-      part = 0.5 * (low + high);
-    }
-    double middle[2];
-    (void)trial(x, y, f, part, middle);
-    indicators(x, middle, z);
-    if (z[which] > 0.0) {
-      low = part;
-      at_low = z[which];
-      at_high *= 0.5;
-    } else {
-      high = part;
-      at_high = z[which];
-      at_low *= 0.5;
-    }
-  }
-  (void)trial(x, y, f, high, new_y);
-  return high;
+  return error;
 }
 
 /* To the communication point `end`, or to an event that ends the motion; returns whether it got there. */
 static int advance(Model *m, double end) {
   Values *x = &m->now;
-  char text[160];
-  for (int steps = 0; x->v[0] < end && !x->ended; steps++) {
-    double f[2], new_y[2], z[N_EVENTS], *y = &x->v[THETA];
+  double least = 1e-15 * (1.0 + fabs(end)); /* of a step that errs by nothing, and that may pass an event */
+  double *y = &x->v[THETA], next[2], z[N_EVENTS], most = (double)INFINITY; /* most: of a step towards an event */
+  for (int tiny = 0; x->v[0] < end && !x->ended;) {
     x->way = fabs(y[1]) > STANDS ? x->way : way_of(x);
-    const int status = rates(x, y, f);
-    if (status != 0 || steps > 1000000) {
-      snprintf(text, sizeof text, "the integration failed at t = %.9g, theta = %.9g, omega = %.9g: %s", x->v[0], y[0],
-               y[1], status != 0 ? REASONS[status] : "more than a million steps");
-      tell(m, 1, text);
-      return 0;
-    }
     if (x->way == 0.0) {
       y[1] = 0.0; /* nothing moves until an input changes */
       x->v[0] = end;
       break;
     }
-    const double left = end - x->v[0];
-    double h = x->h > 0.0 && x->h < left ? x->h : left, error;
-    for (;;) {
-      error = trial(x, y, f, h, new_y);
-      if (error < 1.0) {
-        break;
-      }
-      h *= error > 0.0 && 0.9 * pow(error, -0.125) > 0.2 ? 0.9 * pow(error, -0.125) : 0.2;
-      if (!(x->v[0] + h > x->v[0])) {
-        tell(m, 1, "the integration failed: no step is short enough; perhaps no inertia is left at a dead centre");
-        return 0;
-      }
+    const double left = end - x->v[0], longest = x->h > 0.0 && x->h < left ? x->h : left;
+    const double h = most < longest ? most : longest, error = trial(x, h, y, next);
+    const double growth = error < 1e-4 ? 5.0 : 0.9 * pow(error, -0.2);
+    tiny += h <= least;
+    if (tiny > 10000 || (h <= least && !(error < (double)INFINITY))) {
+      char text[160];
+      snprintf(text, sizeof text, "the integration failed at t = %.9g, theta = %.9g, omega = %.9g: no step is short enough",
+               x->v[0], y[0], y[1]);
+      tell(m, 1, text);
+      return 0;
     }
-    const double growth = error > 1e-9 ? 0.9 * pow(error, -0.125) : 10.0, whole = h;
-    indicators(x, new_y, z);
+    if (!(error < 1.0) && h > least) {
+      x->h = h * (growth > 0.2 ? growth : 0.2);
+      continue;
+    }
+    indicators(x, next, z);
+    int met = 0;
     for (int k = 0; k < N_EVENTS; k++) {
-      if (z[k] < 0.0) {
-        h = cut(x, y, f, h, k, new_y);
-        indicators(x, new_y, z);
-      }
+      met = met || z[k] < 0.0 || (k < 2 && z[k] <= 0.0);
     }
-    const int met = h < whole;
-    if (met || h < left || !(x->h > 0.0)) {
-      x->h = whole * (growth < 10.0 ? growth : 10.0);
+    if (met && h > least) {
+      most = 0.5 * h;
+      continue;
     }
-    y[0] = new_y[0];
-    y[1] = met && has_way(x) && z[AT_REST] <= 0.0 ? 0.0 : new_y[1];
+    x->h = !(x->h > 0.0) || !(h < x->h) ? h * (growth > 1.0 ? growth : 1.0) : x->h;
+    least *= !met && most < least ? 8.0 : 1.0; /* an event less than the last digit of the angle ahead */
+    most = met || most < least ? (double)INFINITY : 0.5 * most;
+    memcpy(y, next, sizeof next);
     x->v[0] = h < left ? x->v[0] + h : end;
-    meet_events(m);
+    if (met) {
+      meet_events(m);
+    }
   }
   x->known = 0;
   return 1;

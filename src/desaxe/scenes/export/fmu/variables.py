@@ -3,12 +3,13 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from ....loads.load import Load
+from ....loads.resolve import plan_of
 from ....mechanism.catalogue import quantity
 from ....mechanism.inputs import INPUTS
 from ....mechanism.names import CENTRES, LENGTHS, MASSES
 from ...content import Content
 from ...schema import SceneError
-from .loads import tables
 
 FIXED = (*LENGTHS, *MASSES, *CENTRES, "g_X", "g_Y", "mu")  # parameters, in their order
 FORCES = ("F_X", "F_Y")
@@ -29,14 +30,14 @@ class Variable(NamedTuple):
 
 
 class Variables(NamedTuple):
-    """All variables, and the names of those that have a role."""
+    """All variables, the names of those that have a role, and the number of event indicators."""
 
     rows: tuple[Variable, ...]
     parameters: tuple[str, ...]
     inputs: tuple[str, ...]
     states: tuple[str, ...]
     outputs: tuple[str, ...]
-    indicators: tuple[str, ...]
+    indicators: int
 
     @property
     def place(self) -> dict[str, int]:
@@ -47,7 +48,8 @@ class Variables(NamedTuple):
 def variables(content: Content, drive: str) -> Variables:
     """The variables of a scene; `drive` is torque or omega."""
     given, moves = content.inputs, drive == "torque"
-    check_outputs(content.outputs)
+    loads = tables(given)
+    check_outputs(content.outputs, loads)
     parameters = [_parameter(n, first(given, n)) for n in FIXED if n not in CENTRES or n in given]
     parameters.append(
         Variable("theta0", "rad", "crank angle at the start", "parameter", "fixed", first(given, "theta"))
@@ -61,7 +63,6 @@ def variables(content: Content, drive: str) -> Variables:
         "torque": Variable("torque", "N*m", "torque on the crank, positive like theta", "input", start=0.0),
         "omega": Variable("omega", "rad/s", "angular speed of the crank", "input", start=speed),
     }[drive]
-    loads = tables(given)
     inputs = [driven, *(_force(n, loads.get(n), first(given, n)) for n in FORCES)]
     motion = [Variable("theta", "rad", "crank angle, from the slider axis", _role("theta", content))]
     if moves:
@@ -73,24 +74,24 @@ def variables(content: Content, drive: str) -> Variables:
     if own is not None:
         raise SceneError(f"outputs: {own!r}: an FMU has a variable of this name; give the quantity another")
     outputs = [_output(name) for name in dict.fromkeys(content.outputs) if name not in taken]
-    count = 3 + 2 * len(loads) if moves else 2
-    zeros = [
-        Variable(f"event_indicator[{k}]", "1", "positive until an event", "local")
-        for k in range(1, count + 1)
-    ]
     time = Variable("time", "s", "time", "independent")
     return Variables(
-        (time, *parameters, *inputs, *motion, *outputs, *zeros),
+        (time, *parameters, *inputs, *motion, *outputs),
         tuple(row.name for row in parameters),
         tuple(row.name for row in inputs),
         ("theta", "omega") if moves else (),
         tuple(row.name for row in outputs),
-        tuple(row.name for row in zeros),
+        3 + 3 * len(loads) if moves else 2,
     )
 
 
-def check_outputs(names: tuple[str, ...]) -> None:
-    """SceneError for an output that a given state does not have."""
+def tables(inputs: Mapping[str, Any]) -> dict[str, Load]:
+    """The loads that vary with the motion, by the forces to which they are added."""
+    return {name: load for name, load in inputs.items() if callable(load)}
+
+
+def check_outputs(names: tuple[str, ...], loads: Mapping[str, Load]) -> None:
+    """SceneError for an output that a given state does not have, or that is a derivative through a load."""
     for name in names:
         try:
             quantity(name, True)
@@ -98,6 +99,13 @@ def check_outputs(names: tuple[str, ...]) -> None:
             raise SceneError(
                 f"outputs: {name!r}: an FMU has a given state, theta and omega: {error}"
             ) from None
+    through = plan_of(names, loads, True, False).terms
+    total = next((name for name, terms in through.items() if terms), None)
+    if total is not None:
+        raise SceneError(
+            f"outputs: {total!r} is a derivative through a load that varies with the motion, which an FMU "
+            "does not give as an output: ask for its directional derivative"
+        )
 
 
 def first(given: Mapping[str, Any], name: str) -> float:

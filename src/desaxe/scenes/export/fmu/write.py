@@ -4,14 +4,13 @@ import hashlib
 import platform
 import shutil
 import subprocess
-import sys
 import tempfile
 import warnings
 import zipfile
-from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
 
+from ....loads.resolve import split
 from ....support.extras import needed
 from ....support.generated import Generated
 from ....support.shown import printable
@@ -20,22 +19,21 @@ from ....support.written import require_path, sealed, write_whole
 from ...content import Content
 from ...scene import Scene
 from ...schema import SceneError
+from ..loaded import require_tables
 from ..motion import has_masses
 from ..portable import heading, require_outputs
-from .description import build_description, description2, description3
-from .loads import check_loads, tables
+from .description import description
 from .programs import programs
 from .source import source_text
-from .variables import variables
+from .variables import tables, variables
 
 COMPILERS = ("cc", "gcc", "clang")
 FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden")
-SYSTEMS = {"Linux": ("linux", ".so"), "Darwin": ("darwin", ".dylib"), "Windows": ("windows", ".dll")}
-MACHINES = {"x86_64": "x86_64", "AMD64": "x86_64", "aarch64": "aarch64", "arm64": "aarch64"}
-FOLDERS_OF_2 = {
-    ("linux", "x86_64"): "linux64",
-    ("darwin", "x86_64"): "darwin64",
-    ("windows", "x86_64"): "win64",
+# Folder and suffix of a binary on a system and processor; FMI 2.0 names no others.
+FOLDERS = {
+    ("Linux", "x86_64"): ("linux64", ".so"),
+    ("Darwin", "x86_64"): ("darwin64", ".dylib"),
+    ("Darwin", "arm64"): ("darwin64", ".dylib"),
 }
 
 
@@ -45,10 +43,6 @@ class FmuWarning(UserWarning):
 
 class Archive(Generated):
     """The texts in an FMU; written, with a binary beside them where a C compiler is."""
-
-    def __init__(self, place: Path, texts: Mapping[str, str], fmi: int) -> None:
-        super().__init__(place, texts)
-        self.fmi = fmi
 
     def there(self, name: str) -> bytes | None:
         """The content of a file in the archive; None where there is none."""
@@ -61,14 +55,11 @@ class Archive(Generated):
         """Write the archive; with a warning, and without a binary, where no C compiler is."""
         require_path(self.folder, overwrite)
         contents = {name: text.encode() for name, text in self.texts.items() if text}
-        found = binary_of(contents[f"sources/{self.folder.stem}.c"], self.folder.stem, self.fmi)
-        if found is None:
-            warnings.warn(
-                f"{printable(self.folder)}: no C compiler found ({', '.join(COMPILERS)}): an FMU of sources "
-                "alone, which the importing program compiles",
-                FmuWarning,
-                stacklevel=3,
-            )
+        found = binary_of(contents[f"sources/{self.folder.stem}.c"], self.folder.stem)
+        if isinstance(found, str):
+            why = "an FMU of sources alone, which the importing program compiles"
+            message = f"{printable(self.folder)}: {found}: {why}"
+            warnings.warn(message, FmuWarning, stacklevel=3)
         else:
             contents |= dict([found])
         with write_whole(self.folder, overwrite) as staged:
@@ -77,51 +68,48 @@ class Archive(Generated):
     def summary(self) -> list[str]:
         """The names in the archive, in a line."""
         with zipfile.ZipFile(self.folder) as archive:
-            return [f"{self.folder}: FMI {self.fmi}.0, {', '.join(archive.namelist())}"]
+            return [f"{self.folder}: FMI 2.0, {', '.join(archive.namelist())}"]
 
 
-def fmu_of(scene: Scene, place: Path, fmi: int = 3, drive: str = "torque") -> Archive:
+def fmu_of(scene: Scene, place: Path, drive: str = "torque") -> Archive:
     """The FMU of a scene; nothing is written."""
-    return Archive(place, texts_of_fmu(scene, place, fmi, drive), fmi)
+    return Archive(place, texts_of_fmu(scene, place, drive))
 
 
-def texts_of_fmu(scene: Scene, place: Path, fmi: int = 3, drive: str = "torque") -> dict[str, str]:
+def texts_of_fmu(scene: Scene, place: Path, drive: str = "torque") -> dict[str, str]:
     """The texts in an FMU by name."""
-    _check(scene, fmi, drive)
+    _check(scene, drive)
     content, name = scene.content, place.stem
     table = variables(content, drive)
     made = programs(content, table)
     source = Path(scene.name).name
-    options = f" --fmi {fmi}" * (fmi != 3) + f" --input {drive}" * (drive != "torque")
+    options = f" --input {drive}" * (drive != "torque")
     said = f"desaxe compile {source or 'SCENE'} --to fmu -o {place.name}{options}"
     head = [*heading(scene, said), "", *_facts(content, drive)]
-    token = hashlib.sha256(repr((head, fmi, drive, table)).encode()).hexdigest()
-    token = f"{{{'-'.join((token[:8], token[8:12], token[12:16], token[16:20], token[20:32]))}}}"
+    # The token is that of all texts, which have every number of the machine and of its tables.
+    digest = hashlib.sha256((repr(table) + source_text(head, table, made, "")).encode()).hexdigest()
+    token = f"{{{'-'.join((digest[:8], digest[8:12], digest[12:16], digest[16:20], digest[20:32]))}}}"
     about = {
         "modelName": name,
         "description": scene.title or "An offset slider-crank",
         "generationTool": f"desaxe {version()}",
     }
-    describe = description3 if fmi == 3 else description2
-    found = {
-        "modelDescription.xml": describe(name, about, table, made, token),
-        f"sources/{name}.c": sealed(source_text(head, table, made, fmi, token)),
+    return {
+        "modelDescription.xml": description(name, about, table, made, token),
+        f"sources/{name}.c": sealed(source_text(head, table, made, token)),
     }
-    return found | ({"sources/buildDescription.xml": build_description(name)} if fmi == 3 else {})
 
 
-def _check(scene: Scene, fmi: int, drive: str) -> None:
+def _check(scene: Scene, drive: str) -> None:
     """An error for what an FMU cannot carry, by name."""
     where = scene.name or "scene"
-    if fmi not in (2, 3) or isinstance(fmi, bool):
-        raise ValueError(f"fmi = {fmi!r}: it is 3 or 2")
     if drive not in ("torque", "omega"):
         raise ValueError(f"input = {drive!r}: it is torque or omega")
     require_outputs(scene)
     content = scene.content
     if content.accuracy == "extended":
         raise SceneError(f'{where}: accuracy = "extended": an FMU has standard')
-    check_loads(where, content.outputs, tables(content.inputs))
+    require_tables(where, split(content.inputs)[1])
     if drive == "torque" and not has_masses(content.inputs):
         raise SceneError(
             f"{where}: nothing moves under a torque without inertia: give [masses], or --input omega"
@@ -153,14 +141,15 @@ def headers() -> Path:
     return Path(fmpy.__file__).parent / "c-code"
 
 
-def binary_of(source: bytes, name: str, fmi: int) -> tuple[str, bytes] | None:
-    """The name in the archive and the bytes of the library; None where there is no compiler."""
+def binary_of(source: bytes, name: str) -> tuple[str, bytes] | str:
+    """The name in the archive and the bytes of the library; else why there is none."""
+    system, machine = platform.system(), platform.machine()
     compiler = next((path for path in map(shutil.which, COMPILERS) if path is not None), None)
-    system, suffix = SYSTEMS.get(platform.system(), ("", ""))
-    machine = MACHINES.get(platform.machine(), "")
-    folder = FOLDERS_OF_2.get((system, machine), "") if fmi == 2 else f"{machine}-{system}"
-    if compiler is None or not system or not machine or not folder or sys.platform == "win32":
-        return None
+    if (system, machine) not in FOLDERS:
+        return f"FMI 2.0 has no binary that is built here, on {system} ({machine})"
+    if compiler is None:
+        return f"no C compiler found ({', '.join(COMPILERS)})"
+    folder, suffix = FOLDERS[system, machine]
     with tempfile.TemporaryDirectory() as place:
         file, made = Path(place) / f"{name}.c", Path(place) / f"{name}{suffix}"
         file.write_bytes(source)
