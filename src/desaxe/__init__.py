@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from .loads.motors import kloss as kloss
     from .loads.motors import over_omega as over_omega
     from .machine import Machine as Machine
+    from .machine.crankshaft import Crankshaft as Crankshaft
     from .mechanism.catalogue import quantities as quantities
     from .mechanism.ranges import between as between
     from .mechanism.ranges import plus_minus as plus_minus
@@ -118,6 +119,7 @@ PUBLIC = {
     "drive": "desaxe.design.drive.drive",
     "explore": "desaxe.scenes.explorer.explore",
     "to_excel": "desaxe.scenes.stores.workbook",
+    "Crankshaft": "desaxe.machine.crankshaft",
     "Machine": "desaxe.machine.machine",
     "UnitWarning": "desaxe.mechanism.slips",
     "fit": "desaxe.design.fit.fit",
@@ -149,6 +151,7 @@ WARN_OF_SLIPS = (
 MODULES = {"plot": "desaxe.plot", "status": "desaxe.mechanism.status", "units": "desaxe.units"}
 
 __all__ = [
+    "Crankshaft",
     "LoadWarning",
     "Machine",
     "UnitWarning",

@@ -85,9 +85,10 @@ FLOORS = {
     "simulation": 7,
     "sweeps": 8,
     "design": 8,
-    "scenes": 9,
-    "machine": 10,
-    "cli": 11,
+    "crankshaft": 9,
+    "scenes": 10,
+    "machine": 11,
+    "cli": 12,
 }
 CLOSED = {
     "compiler": {"support"},

@@ -20,7 +20,16 @@ from .arrays import as_array
 
 Array = NDArray[Any]
 ALWAYS = ("status", "margin")
-ARGUMENTS = (*INPUTS, "branch", "accuracy", "threads", "out", "reduce", "chunks")  # of a grid, by name
+ARGUMENTS = (
+    *INPUTS,
+    "branch",
+    "accuracy",
+    "threads",
+    "out",
+    "reduce",
+    "chunks",
+    "sliders",
+)  # of a grid, by name
 
 
 class Outer(NamedTuple):

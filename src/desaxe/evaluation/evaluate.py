@@ -40,6 +40,7 @@ def evaluate(
     threads: int | None = None,
     out: Any = None,
     quality: bool = False,
+    sliders: Any = None,
     **unknown: Any,
 ) -> Any:
     """Values of quantities and sensitivities, at one point or over arrays that broadcast like NumPy.
@@ -74,6 +75,7 @@ def evaluate(
     quality  True: for each name, in place of the value, an object with `value`, `conditions` (input ->
              |input/value d value/d input|), `error_bound` (of the rounding) and `digits`; loads are
              numbers or tables then
+    sliders  those of a `Crankshaft`, whose sums and single sliders the names are
 
     Labelled arrays (xarray) broadcast by the names of their dimensions, and labelled arrays come back.
     Inputs that the names do not need may be left out; masses and loads are 0 without. A number may
@@ -84,21 +86,27 @@ def evaluate(
 
     See docs/choose.md: which call for which question.
     """
-    if unknown:
-        check_inputs("evaluate", unknown, (*INPUTS, "branch", "accuracy", "threads", "out", "quality"))
+    if unknown and sliders is None:
+        check_inputs(
+            "evaluate", unknown, (*INPUTS, "branch", "accuracy", "threads", "out", "quality", "sliders")
+        )
     given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
     values_of: Callable[..., Any] = values
     absent = m_crank is m_rod is m_slider is I_crank is I_rod is r_crank is r_rod is None
     if not (absent and F_X is F_Y is g_X is g_Y is mu is None):
         loads = (m_crank, m_rod, m_slider, I_crank, I_rod, r_crank, r_rod, F_X, F_Y, g_X, g_Y, mu)
         given.update((name, load) for name, load in zip(LOADS, loads, strict=True) if load is not None)
-        if any(map(callable, loads)):
+        if sliders is None and any(map(callable, loads)):
             with IMPORTS:
                 from .under_loads.loaded import evaluate_loaded as values_of
                 from .under_loads.quality import evaluate_loaded_quality
 
             if quality:
                 return evaluate_loaded_quality(names, given, branch, accuracy, threads, out)
+    if sliders is not None:
+        if quality:
+            raise TypeError("quality=True is of a single slider: crankshaft.members[0].evaluate(...)")
+        return sliders.evaluate(names, {**given, **unknown}, accuracy, threads, out)
     if quality:
         with IMPORTS:
             from .quality import evaluate_quality

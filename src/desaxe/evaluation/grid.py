@@ -59,6 +59,7 @@ def grid(
     out: Any = None,
     reduce: Any = None,
     chunks: Any = None,
+    sliders: Any = None,
     **inputs: Any,
 ) -> "xr.Dataset | dict[str, Array]":
     """Quantities over the outer product of the inputs, as an xarray.Dataset with units.
@@ -88,10 +89,15 @@ def grid(
 
     A pandas Series whose index has a name varies along that index: Series of one index belong together.
 
+    `sliders` are those of a `Crankshaft`: without `reduce`, `chunks` and `out`.
+
         dx.grid(["a_C"], theta=th, ec=ecs, AB=.125, BC=bcs, omega0=157.08).a_C.max("theta")
 
     See docs/choose.md: which call for which question.
     """
+    if sliders is not None:
+        found: xr.Dataset = sliders.grid(names, inputs, accuracy, out=out, reduce=reduce, chunks=chunks)
+        return found
     if any(hasattr(value, "iloc") and has_named_index(value) for value in inputs.values()):
         _refuse_with_series(reduce=reduce, chunks=chunks, out=out)
         wanted = (names,) if isinstance(names, str) else several(names)

@@ -11,7 +11,7 @@ from ..definitions.tables import text_of
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.own import Register, register
-from ..mechanism.quantity_units import SI, UnitSystem
+from ..mechanism.quantity_units import SI, UnitSystem, unit_of
 from ..mechanism.status import PointStatus
 from ..support.extras import explained
 from ..support.forks import IMPORTS
@@ -59,7 +59,8 @@ def side_attributes() -> dict[str, Any]:
 
 def input_attributes(name: str) -> dict[str, str]:
     """CF attributes of an input."""
-    return {"units": INPUTS[name].unit, "long_name": INPUTS[name].meaning}
+    row = INPUTS.get(name.partition("[")[0])  # that of one slider of several
+    return {"units": str(unit_of(name)), "long_name": row.meaning if row else name}
 
 
 @cache
@@ -87,7 +88,7 @@ def provenance(
 ) -> dict[str, Any]:
     """Attributes of a dataset: the request, and the version that computed it; `of`: names behind `names`."""
     axes = [name for name, array in inputs.items() if array.ndim]
-    fixed = [said(name, array, INPUTS[name].unit) for name, array in inputs.items() if not array.ndim]
+    fixed = [said(name, array, unit_of(name)) for name, array in inputs.items() if not array.ndim]
     names = tuple(names)
     own = text_of((*names, *of)) if register().definitions else ""
     scene = ", ".join(names) + (f" over {', '.join(axes)}" if axes else "")

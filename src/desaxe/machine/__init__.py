@@ -1,6 +1,7 @@
 """A machine: the inputs of a design, frozen, with every public call as a method.
 
 machine    `desaxe.Machine`: a mapping of inputs in SI units, and the units that its owner works in
+crankshaft `desaxe.Crankshaft`: several sliders on one crankshaft
 methods    the table of public functions that are methods, and how a function becomes one
 arguments  what a call is given, in SI units
 function   a prepared callable in those units

@@ -19,7 +19,9 @@ POSITIONS = {"Y", "s", "V_C", "a_C"}
 
 
 def has_unit(name: str) -> bool:
-    """True where an argument of this name is a quantity with a unit."""
+    """True where an argument of this name, or of one slider of several, is a quantity with a unit."""
+    if name.endswith("]"):
+        name = name.partition("[")[0]
     return name in INPUTS or name in OTHERS or name in POSITIONS or name in WHOLE
 
 

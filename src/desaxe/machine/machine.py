@@ -181,7 +181,7 @@ class Machine(Mapping[str, Any]):
             own = self._given.get(name)
             if isinstance(own, (int, float)) and not isinstance(own, bool):
                 found[name] = own
-            elif name == "branch" or callable(value):
+            elif name in ("branch", "sliders") or callable(value):
                 found[name] = value
             else:
                 found[name] = self.units.of(name).shown(value)

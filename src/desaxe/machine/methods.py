@@ -140,6 +140,8 @@ def call(
     as_quantity: bool,
 ) -> Any:
     """Call a public function with a machine's inputs and those given, which replace them."""
+    if "sliders" in machine and "sliders" not in takes.names:
+        raise TypeError(f"{name} is of one slider: crankshaft.members[0].{name}(...)")
     positional = takes.positional
     if len(args) > len(positional):
         raise TypeError(f"{name}() takes {len(positional)} arguments without a name, got {len(args)}")

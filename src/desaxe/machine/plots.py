@@ -122,6 +122,8 @@ class Plots:
         """The quantities over the crank angle, labelled, in the units of the machine."""
         if "theta" in inputs:
             return self._machine.grid(names, **inputs)
-        end = cycle(split({**self._machine, **inputs})[1])
+        sliders = self._machine.get("sliders")
+        loads = {} if sliders else split({**self._machine, **inputs})[1]
+        end = sliders.turn("plot", {}).angle if sliders else cycle(loads)
         angles = np.linspace(0.0, end, round(STEPS * end / TURN) + 1)
         return self._machine.grid(names, **inputs, theta=self._machine.units.of("theta").shown(angles))

@@ -22,7 +22,7 @@ PLAIN = Conversion("1")
 # Units of inputs and results that are no quantities of the catalogue.
 OTHERS = {
     **dict.fromkeys(("V_outward", "V_inward"), "m/s"),
-    **dict.fromkeys(("theta0", "until", "phase", "angle", "theta_intervals"), "rad"),
+    **dict.fromkeys(("theta0", "until", "phase", "bank", "firing", "angle", "theta_intervals"), "rad"),
     **dict.fromkeys(("omega_start", "omega_mean", "synchronous_speed"), "rad/s"),
     **dict.fromkeys(("t", "t_end", "t_last", "times", "period"), "s"),
     **dict.fromkeys(
@@ -34,9 +34,10 @@ OTHERS = {
     ),
     **dict.fromkeys(("work", "work_in", "work_out"), "J"),
     **dict.fromkeys(("power_mean", "power_peak"), "W"),
-    "flywheel_inertia": "kg*m^2",
+    **dict.fromkeys(("flywheel_inertia", "I_shaft"), "kg*m^2"),
+    **dict.fromkeys(("C_inertia_X", "C_inertia_Y"), "N*m"),
     **dict.fromkeys(("breakdown_slip", "gear"), "1"),
-    "radius": "m",
+    **dict.fromkeys(("radius", "position", "spacing"), "m"),
     "mass": "kg",
     "product": "kg*m",
 }  # fmt: skip
@@ -117,7 +118,9 @@ SI = UnitSystem({})
 
 
 def si_unit(name: str) -> str:
-    """The SI unit of a quantity, input or measure; ValueError for another name."""
+    """The SI unit of a quantity, input or measure, also of one slider of several; ValueError for another."""
+    if name.endswith("]"):
+        name = name.partition("[")[0]
     if name in INPUTS:
         return INPUTS[name].unit
     if name in OTHERS:

@@ -24,7 +24,7 @@ from ..mechanism.keywords import check_inputs
 from ..mechanism.messages import named
 from ..mechanism.quantity_units import units_of_extreme
 from ..mechanism.status import PeakStatus
-from ..runtime.request import as_number, check_common
+from ..runtime.request import as_number, check_common, is_steady
 from ..support.answer import Answer
 from ..support.shown import shown as shown_value
 from .designs import KINDS, PeakPlan, Sought, peaks_of_designs, plan_of, search_of
@@ -33,7 +33,7 @@ from .nodes import Array
 MOST_TURNS = 1000  # of a range of crank angles
 ONE_TURN = (0.0, TURN)
 MANY = 60  # values of a load: more are no designs that anybody compares
-INPUTS_OF_PEAK = (*INPUTS, "branch", "kind", "accuracy", "threads")
+INPUTS_OF_PEAK = (*INPUTS, "branch", "kind", "accuracy", "threads", "sliders")
 
 
 def peak(
@@ -50,6 +50,7 @@ def peak(
     theta: tuple[float, float] = ONE_TURN,
     accuracy: str | float = "standard",
     threads: int | None = None,
+    sliders: Any = None,
     **loads: Any,
 ) -> dict[str, Any]:
     """The extreme value of a quantity over the crank angle; designs broadcast like NumPy.
@@ -60,6 +61,7 @@ def peak(
     others  as in `evaluate`, masses and loads among them. F_X and F_Y may vary with the motion; at a jump
             both one-sided limits count, at an end of the range that from within and the value itself.
             `gradient` by such a force is that by a constant added to it
+    sliders those of a `Crankshaft`
 
     Returns a dict, floats for one design and arrays for many:
 
@@ -92,6 +94,13 @@ def peak(
     if not isinstance(kind, str) or kind not in KINDS:
         raise ValueError(f"kind = {shown_value(kind)}: it is one of {', '.join(KINDS)}")
     given = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega, **loads}
+    if sliders is not None:
+        given["alpha"] = None if is_steady(alpha) else alpha
+        ends = None if theta is ONE_TURN else _range(theta, name)
+        whole: dict[str, Any] = sliders.peak(
+            name, kind, ends, {n: v for n, v in given.items() if v is not None}
+        )
+        return whole
     check_inputs("peak", loads, INPUTS_OF_PEAK)
     check_common(given, branch, threads)
     _, varying = loads_of(given)

@@ -13,7 +13,7 @@ from ...peaks.peak import peak
 from ...runtime.request import as_number
 from ...support.panels import Array, Panels
 from ...support.shown import shown
-from ..turn.turn import CREEP, JAMS, NoCycleError, Turn
+from ..turn.turn import CREEP, JAMS, NoCycleError, Turn, turn_of
 from .inertia import flywheel_for
 from .result import FIGURES, Drive
 
@@ -26,12 +26,15 @@ DIFFERENTIATED = tuple(name for name in FIGURES if not name.startswith("theta_")
 
 
 @with_known_keywords
-def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, **inputs: Any) -> Drive:
+def drive(
+    *, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, sliders: Any = None, **inputs: Any
+) -> Drive:
     """Torque, power, work, flywheel and starting torque that one turn of a design requires.
 
     fluctuation  (fastest - slowest)/mean speed that a flywheel is to keep under a constant torque: 0.1 or
                  "10 %"
     reverse      True: the starting torque is that for either way of turning
+    sliders      those of a `Crankshaft`
     inputs       of one design with masses and loads, as in `evaluate`. omega0 is the speed of the crank; with
                  alpha it is that at theta = 0, and the turn is the first one. F_X and F_Y may vary
                  with the motion, over one turn or up to four: all figures are then of these
@@ -70,7 +73,7 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
         [0.323, 26.468, 1.845]
     """
     required = fluctuation_of(fluctuation)
-    design = design_of("drive", inputs, branch)
+    design = design_of("drive", inputs, branch, sliders)
     status = _status(design)
     found: dict[str, Any] = dict.fromkeys(FIGURES, nan)
     slopes = {name: dict.fromkeys(design.parameters, nan) for name in DIFFERENTIATED}
@@ -91,12 +94,13 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
     figures = {name: float(value) for name, value in found.items()}
     gradients = {name: {by: float(slope) for by, slope in own.items()} for name, own in slopes.items()}
     about = {"fluctuation": required, "gradient": gradients, "status": status}
-    return Drive({**figures, **about}, {**design.numbers, **design.loads}, design.branch, course)
+    inputs = {**design.numbers, **design.loads}
+    return Drive({**figures, **about}, inputs, design.branch, course, design.turns)
 
 
-def design_of(caller: str, inputs: Mapping[str, Any], branch: int) -> Turn:
+def design_of(caller: str, inputs: Mapping[str, Any], branch: int, sliders: Any = None) -> Turn:
     """A design whose crank turns."""
-    design = Turn(caller, inputs, branch, accelerates=True)
+    design = turn_of(caller, inputs, branch, sliders, accelerates=True)
     if "omega0" not in design.numbers:
         as_number("omega0", None, ("ec", "AB", "BC", "omega0"), (caller,))
     if not design.numbers["omega0"]:

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from math import degrees, isnan, pi
 from typing import TYPE_CHECKING, Any
 
-from ...loads.angles import turns_of
 from ...loads.load import Load
 from ...loads.words import brief
 from ...mechanism.quantity_units import SI, UnitSystem, units_by_name
@@ -13,7 +12,6 @@ from ...support.answer import Answer
 from ...support.forks import IMPORTS
 from ...support.shown import printed, with_unit
 from ...units.system import Conversion
-from ..turn.cycle import MOST_TURNS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,8 +22,9 @@ if TYPE_CHECKING:
 class Drive(Answer):
     """The figures by name, `gradient` and `status`; `report()`, `plot()`.
 
-    `inputs` are those of the design in SI units, varying loads included, `branch` is its branch. `course` has
-    arrays over the turn: `theta`, `T_in`, `power_in` and, with the flywheel, `theta_of_speed` and `speed`.
+    `inputs` are those of the design in SI units, varying loads included, `branch` is its branch; its loads
+    repeat after `turns`. `course` has arrays over these: `theta`, `T_in`, `power_in` and, with the flywheel,
+    `theta_of_speed` and `speed`.
     `system` is the unit system of all but `inputs`.
     """
 
@@ -37,9 +36,10 @@ class Drive(Answer):
         inputs: Mapping[str, Any],
         branch: int,
         course: "Mapping[str, NDArray[Any]]",
+        turns: int = 1,
     ) -> None:
         super().__init__(figures, _units)
-        self.inputs, self.branch, self.course = dict(inputs), branch, dict(course)
+        self.inputs, self.branch, self.course, self.turns = dict(inputs), branch, dict(course), turns
 
     def convert_rest(self, shown: "Shown") -> None:
         """The course over the turn in other units."""
@@ -70,15 +70,13 @@ class Drive(Answer):
         """A turn in the unit of its angles."""
         return float(self._system.of_unit("rad").shown(2.0 * pi))
 
-    @property
-    def turns(self) -> int:
-        """After how many turns the loads repeat."""
-        return turns_of("drive", {n: load for n, load in self.inputs.items() if callable(load)}, MOST_TURNS)
-
     def design(self) -> list[str]:
         """The inputs with their units, loads in a few words."""
         told = []
         for name, value in self.inputs.items():
+            if name == "sliders":
+                told.append(str(value))
+                continue
             conversion = self._system.of(name)
             if isinstance(value, Load):
                 told.append(f"{name} {brief(value, conversion)}")

@@ -18,12 +18,15 @@ BLOCK = 64  # panels whose waves are in memory at a time
 
 
 @with_known_keywords
-def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> dict[str, Any]:
+def harmonics(
+    name: str, *, orders: int = 8, branch: int = 1, sliders: Any = None, **inputs: Any
+) -> dict[str, Any]:
     """The harmonics of a quantity over a cycle at constant speed.
 
     name    any quantity or sensitivity, such as "F_shaking_Y", "T_in" or "a_C"
     orders  the highest harmonic
     inputs  of one design, as in `evaluate`; F_X and F_Y may vary with the motion, and repeat after n turns
+    sliders those of a `Crankshaft`; what its sliders cancel to rounding is 0
 
     Returns a dict; the quantity is mean + sum over orders n > 0 of cos cos(n theta) + sin sin(n theta):
 
@@ -45,14 +48,16 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
         >>> [round(float(c), 4) for c in found["cos"][1:3]]
         [-10.0, -2.5403]
     """
-    quantity(name)
+    if sliders is None:
+        quantity(name)
     if name == "status":
         raise ValueError("status is not a real number")
     orders = whole_number("orders", orders, 0, MOST)
-    turn = turning("harmonics", inputs, branch)
+    turn = turning("harmonics", inputs, branch, sliders)
     panels = turn.panels([name], widest=min(WIDEST, WAVES / (orders + 1)))
     order = np.arange(orders * turn.turns + 1)
     c, remainder = _series(panels, panels.values[name], turn.turns, order.size)
+    c[np.abs(c) <= turn.floor(name)] = 0.0
     scale = np.where(order == 0, 1.0, 2.0)
     cosine, sine = scale * c.real, -scale * c.imag
     series: dict[str, Any] = {

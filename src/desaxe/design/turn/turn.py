@@ -51,6 +51,10 @@ class Turn(Cycle):
             if name not in self.numbers:
                 as_number(name, None, LENGTHS, (caller,))
 
+    def floor(self, name: str) -> float:
+        """The magnitude up to which a coefficient of a sum over sliders is rounding; 0 of one slider."""
+        return 0.0
+
     @computed_once
     def parameters(self) -> tuple[str, ...]:
         """The inputs that are numbers and matter to the torque."""
@@ -101,9 +105,19 @@ class Turn(Cycle):
         return np.asarray(super().edges(names, motion, **other)[0])
 
 
-def turning(caller: str, inputs: Mapping[str, Any], branch: int) -> Turn:
+def turn_of(
+    caller: str, inputs: Mapping[str, Any], branch: int, sliders: Any, accelerates: bool = False
+) -> Turn:
+    """A design, or several sliders on one crankshaft, which know their turn themselves."""
+    if sliders is None:
+        return Turn(caller, inputs, branch, accelerates)
+    turn: Turn = sliders.turn(caller, inputs, accelerates)
+    return turn
+
+
+def turning(caller: str, inputs: Mapping[str, Any], branch: int, sliders: Any = None) -> Turn:
     """A design whose crank turns fully, at constant speed."""
-    turn = Turn(caller, inputs, branch)
+    turn = turn_of(caller, inputs, branch, sliders)
     if turn.margin < 0.0:
         raise cannot_turn(caller, turn)
     return turn

@@ -1,0 +1,157 @@
+"""The cycle of a crankshaft: after it all of its sliders repeat; their edges are its edges."""
+
+from collections.abc import Mapping, Sequence
+from math import lcm
+from typing import Any
+
+import numpy as np
+
+from ..design.turn.cycle import Cycle, Motion
+from ..design.turn.turn import Turn
+from ..mechanism.catalogue import has
+from ..mechanism.inputs import INPUTS
+from ..mechanism.names import parts
+from ..mechanism.read import read
+from ..support.computed import computed_once
+from ..support.panels import Array
+from .sums import STATE, SliderSums, indexed
+
+NEAR = 1e-9  # rad: an angle that is an edge
+NOTHING = 1e-12  # beside what a single slider adds
+SAMPLES = 64  # of a turn, for the size of what a slider adds
+
+
+class ShaftCycle(Cycle):
+    """Sliders over their common cycle, each by its own one."""
+
+    def __init__(self, caller: str, sliders: SliderSums, inputs: Mapping[str, Any], ends: Any = None) -> None:
+        state = {name: read(INPUTS[name], value, caller) for name, value in inputs.items() if name in STATE}
+        others = {name: value for name, value in inputs.items() if name not in STATE}
+        self.sliders = sliders.replaced(others)
+        speed = {"omega0": state.get("omega", state.get("omega0"))}  # of conditions that depend on it
+        self.own = [
+            Turn(
+                caller,
+                {**speed, **{n: v for n, v in inputs.items() if n != "branch"}},
+                inputs.get("branch", 1),
+            )
+            for inputs in self.sliders.inputs_of_each()
+        ]
+        backwards = state.get("omega0", state.get("omega", 1.0)) < 0.0
+        turns = lcm(*(own.turns for own in self.own))
+        super().__init__({**state, "sliders": self.sliders}, {}, 1, turns, backwards)
+        self._ends = ends
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the largest angle: of the cycle, or those that were asked for."""
+        return super().ends if self._ends is None else self._ends
+
+    @property
+    def has_friction(self) -> bool:
+        """True if a guide has friction."""
+        return any(own.has_friction for own in self.own)
+
+    def values(
+        self, names: Sequence[str], theta: Array, row: Any = 0, motion: Motion | None = None, **other: Any
+    ) -> dict[str, Array]:
+        """Quantities at angles, NaN where there is none; `other` inputs replace those of the sliders."""
+        state = {n: v for n, v in self.numbers.items() if n != "sliders"}
+        state |= {n: v for n, v in other.items() if n in STATE}
+        if motion is not None:
+            state = {**motion(theta)}
+        sliders = self.sliders.replaced({n: v for n, v in other.items() if n not in STATE})
+        found = sliders.evaluate(list(names), {**state, "theta": theta})
+        return {name: np.broadcast_to(found[name], theta.shape) for name in names}
+
+    def edges(self, names: Sequence[str], motion: Motion | None = None, **other: Any) -> Array:
+        """The angles between which all sliders are smooth, in one row."""
+        own = [self._edges_of(k, names, motion, **other) for k in range(len(self.own))]
+        return np.concatenate([np.array(self.ends), *own])[None]
+
+    def _edges_of(self, k: int, names: Sequence[str], motion: Motion | None = None, **other: Any) -> Array:
+        """The edges of a slider, at angles of the shaft within the ends."""
+        own, firing = self.own[k], self.sliders.members[k].firing
+        motion = motion or self._motion(other)
+        inputs = {n: v for n, v in other.items() if n not in STATE}
+        here = Cycle.edges(own, _bases(names), lambda theta: motion(theta + firing), **inputs).ravel()
+        low, high = self.ends
+        first = low + (here[np.isfinite(here)] + firing - low) % own.angle
+        every = first[:, None] + own.angle * np.arange(np.ceil((high - low) / own.angle))
+        return np.asarray(every[every <= high])
+
+    def _motion(self, other: Mapping[str, Any]) -> Motion:
+        """The speed and acceleration of the shaft under its law, or as they are given."""
+        known = {**self.numbers, **other}
+        alpha = known.get("alpha") or 0.0
+        start = known.get("omega", known.get("omega0")) or 0.0
+
+        def motion(theta: Array) -> dict[str, Array]:
+            square = start**2 + (0.0 if "omega" in known else 2.0 * alpha * theta)
+            speed = np.copysign(np.sqrt(np.maximum(square, 0.0)), start)
+            return {"omega": np.broadcast_to(speed, theta.shape), "alpha": np.full(theta.shape, alpha)}
+
+        return motion
+
+    def moves(self, names: Sequence[str], angles: Array) -> dict[str, Array]:
+        """By how much each input moves angles of jumps; where two sliders jump at once, the first one's."""
+        moves: dict[str, Array] = {}
+        free = np.ones(angles.shape, bool)
+        for k, own in enumerate(self.own):
+            edges = self._edges_of(k, names)
+            mine = free & (np.abs(angles[..., None] - edges).min(-1, initial=np.inf) < NEAR)
+            free &= ~mine
+            found = Cycle.moves(own, _bases(names), angles - self.sliders.members[k].firing)
+            found |= {f"{name}[{k}]": np.ones(angles.shape) for name in ("phase", "bank")}
+            for name, shift in found.items():
+                moves[name] = np.where(mine, shift, moves.get(name, 0.0))
+        return moves
+
+
+class ShaftTurn(Turn, ShaftCycle):
+    """A crankshaft over its cycle, as `Turn` is one design."""
+
+    def __init__(self, caller: str, sliders: SliderSums, inputs: Mapping[str, Any], ends: Any = None) -> None:
+        ShaftCycle.__init__(self, caller, sliders, inputs, ends)
+
+    @computed_once
+    def moving_parameters(self) -> tuple[str, ...]:
+        """The inputs of the sliders that matter to the torque, and the phases."""
+        every = [name for own in self.own for name in own.moving_parameters]
+        phases = [f"phase[{k}]" for k in range(len(self.own))]
+        return tuple(dict.fromkeys([*every, *phases]))
+
+    @computed_once
+    def parameters(self) -> tuple[str, ...]:
+        """The inputs that matter to the torque, and the speed."""
+        speeds = [name for name in ("omega0", "omega", "alpha") if name in self.numbers]
+        return (*self.moving_parameters, *speeds)
+
+    @property
+    def margin(self) -> float:
+        """The least BC - AB - |ec|."""
+        return min(own.margin for own in self.own)
+
+    def slopes_of(self, name: str) -> dict[str, str]:
+        """The derivatives of a quantity, by the inputs that it depends on."""
+        found, slopes = {}, dict.fromkeys(STATE, 1.0)
+        for parameter in self.parameters:
+            try:
+                terms = self.sliders.terms(f"{name}_wrt_{parameter}", slopes)
+            except ValueError:  # a motion does not depend on masses
+                continue
+            if terms:
+                found[parameter] = f"{name}_wrt_{parameter}"
+        return found
+
+    def floor(self, name: str) -> float:
+        """The magnitude of a sum that is rounding beside what a single slider adds."""
+        theta = np.linspace(*self.ends, SAMPLES * self.turns)
+        state = self._motion({})(theta)
+        return NOTHING * self.sliders.largest(name, {**state, "theta": theta})
+
+
+def _bases(names: Sequence[str]) -> list[str]:
+    """The quantities of a slider behind names of the shaft, and the torque: loads and friction touch it."""
+    bases = [indexed(parts(name)[0])[0] for name in names]
+    return list(dict.fromkeys(["T_in", *(base for base in bases if has(base))]))

@@ -1,0 +1,98 @@
+"""`Sliders`: what calls take as `sliders=`, several sliders on one crankshaft."""
+
+from collections.abc import Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..evaluation.axes import ALWAYS
+from ..evaluation.labels import attributes, labelled
+from ..mechanism.catalogue import quantity
+from ..mechanism.names import parts
+from ..mechanism.own import using
+from ..mechanism.quantity_units import unit_of, units_of_extreme
+from ..mechanism.status import PeakStatus
+from ..runtime.request import is_steady, several
+from ..support.answer import Answer
+from .cycle import ShaftTurn
+from .extreme import extreme_of
+from .sums import SliderSums, indexed, number
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_COUPLE = "couple of the inertia forces along {}, about the shaft's middle"
+MEANING = {f"C_inertia_{axis}": _COUPLE.format(axis) for axis in "XY"}
+
+
+class Sliders(SliderSums):
+    """Several sliders on one crankshaft, as `dx.Crankshaft` makes them."""
+
+    def turn(self, caller: str, inputs: Mapping[str, Any], accelerates: bool = False) -> ShaftTurn:
+        """The shaft over its cycle."""
+        given = {n: v for n, v in inputs.items() if v is not None and (n != "alpha" or not is_steady(v))}
+        if "alpha" in given and not accelerates:
+            raise TypeError(f"{caller}: alpha: no turn repeats the one before; leave it out")
+        with using(self.definitions):
+            return ShaftTurn(caller, self, given)
+
+    def peak(self, name: str, kind: str, theta: Any, given: Mapping[str, Any]) -> Answer:
+        """`desaxe.peak` of the shaft; theta: a range of angles, None for the cycle."""
+        with using(self.definitions):
+            arrays = {n: np.asarray(v) for n, v in given.items() if np.ndim(v) and not callable(v)}
+            shape = np.broadcast_shapes(*(a.shape for a in arrays.values()))
+            rows = {n: np.broadcast_to(a, shape).ravel().tolist() for n, a in arrays.items()}
+            found = [
+                extreme_of(
+                    ShaftTurn("peak", self, {**given, **{n: r[k] for n, r in rows.items()}}, theta),
+                    name,
+                    kind,
+                )
+                for k in range(int(np.prod(shape)))
+            ]
+            return Answer(_stacked(found, shape), partial(units_of_extreme, name), PeakStatus)
+
+    def grid(self, names: Any, inputs: Mapping[str, Any], accuracy: Any, **options: Any) -> "xr.Dataset":
+        """`desaxe.grid` of the shaft: the outer product of its inputs."""
+        for option, value in options.items():
+            if value is not None:
+                raise TypeError(f"{option}= is not there for a crankshaft: reduce or store the Dataset")
+        wanted = tuple(dict.fromkeys([*((names,) if isinstance(names, str) else several(names)), *ALWAYS]))
+        axes = {n: v if callable(v) else number(n, v) for n, v in inputs.items() if v is not None}
+        arrays = {n: np.asarray(v, float) for n, v in axes.items() if not callable(v) and n != "branch"}
+        dims = [n for n, array in arrays.items() if array.ndim]
+        for n in dims:
+            if arrays[n].ndim > 1:
+                raise ValueError(f"{n}: a grid takes numbers and 1-d arrays, got the shape {arrays[n].shape}")
+            axes[n] = arrays[n].reshape([-1 if n == d else 1 for d in dims])
+        found = self.evaluate(wanted, axes, accuracy)
+        with using(self.definitions):
+            rows = {n: (dims, found[n], described(n)) for n in wanted}
+            return labelled(rows, arrays, 1, accuracy)
+
+
+def described(name: str) -> dict[str, Any]:
+    """CF attributes of a sum, of a quantity of one slider, or of a derivative."""
+    base, by = parts(name)
+    if name == "status":
+        return attributes(name)
+    if by:
+        meaning = f"derivative of {base} by {', '.join(by)}"
+    else:
+        plain, index = indexed(base)
+        meaning = MEANING.get(plain) or quantity(plain).meaning
+        meaning += "" if index is None else f", slider {index}"
+    return {"units": str(unit_of(name)), "long_name": meaning}
+
+
+def _stacked(found: list[dict[str, Any]], shape: tuple[int, ...]) -> dict[str, Any]:
+    """Results of several designs as arrays of a shape; of one as it is."""
+    if not shape:
+        return found[0]
+    keys = ("value", "theta", "side", "status")
+    rows: dict[str, Any] = {key: np.reshape([one[key] for one in found], shape) for key in keys}
+    slopes = {
+        p: np.reshape([one["gradient"].get(p, np.nan) for one in found], shape) for p in found[0]["gradient"]
+    }
+    return {**{k: rows[k] for k in keys[:3]}, "gradient": slopes, "status": rows["status"]}

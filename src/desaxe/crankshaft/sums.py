@@ -1,0 +1,366 @@
+"""Quantities of a crankshaft: sums over its sliders, each evaluated by state at its own angle.
+
+Slider k is at its outer dead centre (at ec = 0) where theta = phase + bank. It stands under theta - phase -
+bank, and its load is taken at theta - firing, which is the same angle of the crank: so it is evaluated there,
+at the shaft's omega and alpha. Its axis is turned by the bank b in the sense of theta, so that in the shaft's
+frame X = F_X cos b + F_Y sin b and Y = -F_X sin b + F_Y cos b; gravity is turned the other way.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from re import compile as pattern
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+
+from ..evaluation.evaluate import Values, evaluate
+from ..mechanism.catalogue import has, quantity
+from ..mechanism.inputs import INPUTS, Input
+from ..mechanism.names import parts, sensitivity
+from ..mechanism.own import Definition, register, using
+from ..mechanism.quantity_units import si_unit, units_by_name
+from ..mechanism.read import number_of, read_array
+from ..runtime.request import check_common, several
+
+GRAVITY = ("g_X", "g_Y")
+STATE = ("theta", "omega0", "omega", "alpha")
+POSITION = ("phase", "bank", "position")
+FORCES = ("F_shaking", "F_inertia")  # along X and Y, which turn with the bank
+COUPLES = {"C_inertia_X": "F_inertia_X", "C_inertia_Y": "F_inertia_Y"}
+OF_SHAFT = (
+    "T_in",
+    "M_shaking",
+    "M_inertia",
+    "power_in",
+    "kinetic_energy",
+    "M_eff",
+)  # its inertia is in these
+SUMS = (*OF_SHAFT, "potential_energy", "P_friction", *(f"{name}_{axis}" for name in FORCES for axis in "XY"))
+FACTS = ("omega", "status", "margin")
+INDEXED = pattern(r"(\w+)\[(\d+)\]")
+SHAFT = -1  # in place of a slider's index: a slider without masses, whose crank is the shaft
+BARE: dict[str, Any] = {"ec": 0.0, "AB": 1.0, "BC": 3.0}
+TINY = 1e-150  # rad/s, in place of rest: slopes by omega^2 stay finite
+
+
+class ShaftSlider(NamedTuple):
+    """A slider: its inputs in SI units, its angles [rad] and its distance from the shaft's middle [m]."""
+
+    inputs: Mapping[str, Any]
+    phase: Any = 0.0
+    bank: Any = 0.0
+    firing: Any = 0.0
+    position: Any = 0.0
+
+
+class Share(NamedTuple):
+    """The coefficient of a slider's quantity: constant + cos cos(bank) + sin sin(bank)."""
+
+    constant: Any = 0.0
+    cos: Any = 0.0
+    sin: Any = 0.0
+
+    def at(self, bank: Any) -> Any:
+        """The coefficient at a bank."""
+        if isinstance(self.cos, float) and isinstance(self.sin, float) and self.cos == self.sin == 0.0:
+            return self.constant
+        return self.constant + self.cos * np.cos(bank) + self.sin * np.sin(bank)
+
+    def times(self, factor: Any) -> "Share":
+        """The coefficient multiplied by a number."""
+        return Share(*(part * factor for part in self))
+
+
+Terms = dict[tuple[int, str], Share]  # slider and its quantity -> how much of it
+
+
+class ShaftState(NamedTuple):
+    """The crank angle, speed and acceleration of the shaft; `slopes`: of the speed, under the law."""
+
+    theta: Any
+    omega: Any
+    alpha: Any
+    slopes: Mapping[str, Any]
+    stalled: Any = False
+
+    @property
+    def inputs(self) -> dict[str, Any]:
+        """Speed and acceleration as inputs, as far as there are any."""
+        return {} if self.omega is None else {"omega": self.omega, "alpha": self.alpha}
+
+
+def state_of(given: Mapping[str, Any]) -> ShaftState:
+    """The state of the shaft that these inputs are."""
+    check_common(given, 1)
+    theta, omega0, omega, alpha = (number(name, given.get(name)) for name in STATE)
+    alpha = 0.0 if alpha is None else alpha
+    if omega is not None or omega0 is None:
+        return ShaftState(theta, omega, alpha, {"omega": 1.0})
+    start = 0.0 if theta is None else theta
+    omega = evaluate("omega", theta=start, omega0=omega0, alpha=alpha, **BARE)
+    with np.errstate(invalid="ignore"):
+        stalled = np.isnan(omega) & np.isfinite(omega0 + start + alpha)
+    if np.any(stalled):
+        omega = np.where(stalled, 1.0, omega)
+    moving = np.where(np.equal(omega, 0.0), TINY, omega)
+    slopes = {"theta": alpha / moving, "alpha": start / moving, "omega0": omega0 / moving}
+    at_rest = np.equal(omega0, 0.0) & np.equal(omega, 0.0)
+    slopes["omega0"] = np.where(at_rest, 1.0, slopes["omega0"]) if np.any(at_rest) else slopes["omega0"]
+    moving = moving if np.any(np.not_equal(moving, omega) & np.not_equal(alpha, 0.0)) else omega
+    return ShaftState(theta, moving, alpha, slopes, stalled)
+
+
+def number(name: str, value: Any) -> Any:
+    """A number, or an array as it broadcasts; None where it is not given."""
+    if value is None or hasattr(value, "dims"):
+        return value
+    plain = indexed(name)[0]
+    row = INPUTS.get(plain) or Input(plain, si_unit(plain), "")
+    result = number_of(row, value)
+    return read_array(row, value) if result is None else result
+
+
+def indexed(name: str) -> tuple[str, int | None]:
+    """A name without its index, and this; None where it has none."""
+    match = INDEXED.fullmatch(name)
+    return (match[1], int(match[2])) if match else (name, None)
+
+
+class SliderSums:
+    """Sliders on one shaft: gravity in its frame, its moment of inertia, and its quantities.
+
+    definitions   user-defined quantities; one without an index is the sum of the sliders'
+    """
+
+    def __init__(
+        self,
+        members: Sequence[ShaftSlider],
+        gravity: Mapping[str, Any] | None = None,
+        I_shaft: Any = 0.0,
+        definitions: tuple[Definition, ...] = (),
+    ) -> None:
+        self.members, self.I_shaft, self.definitions = tuple(members), I_shaft, definitions
+        self.gravity = {name: (gravity or {}).get(name) or 0.0 for name in GRAVITY}
+
+    def replaced(self, inputs: Mapping[str, Any]) -> Self:
+        """The sliders with other inputs: "AB" of all, "AB[2]" of one; without those that are None."""
+        rows = [{**row.inputs} for row in self.members]
+        members, gravity, I_shaft = list(self.members), dict(self.gravity), self.I_shaft
+        for key, value in inputs.items():
+            name, index = indexed(key)
+            if index is not None and index >= len(rows):
+                raise TypeError(f"{key}: there are sliders 0 to {len(rows) - 1}")
+            if name in POSITION and index is not None:
+                members[index] = _moved(members[index], name, number(key, value))
+            elif key == "I_shaft":
+                I_shaft = number(key, value)
+            elif key in GRAVITY:
+                gravity[key] = 0.0 if value is None else value
+            elif name in (*INPUTS, "branch") and name not in (*STATE, *GRAVITY):
+                for row in rows if index is None else [rows[index]]:
+                    row[name] = value
+            else:
+                raise TypeError(f"a crankshaft has no input {key!r}: it has those of its sliders, such as "
+                                "AB or AB[0], phase[0], bank[0], I_shaft, g_X, g_Y")  # fmt: skip
+        kept = ({n: v for n, v in row.items() if v is not None} for row in rows)
+        members = [member._replace(inputs=row) for member, row in zip(members, kept, strict=True)]
+        return type(self)(members, gravity, I_shaft, self.definitions)
+
+    def inputs_of(self, k: int) -> dict[str, Any]:
+        """The inputs of a slider in its own frame, with the gravity there."""
+        if k == SHAFT:
+            return {**BARE, "I_crank": self.I_shaft}
+        found, bank = dict(self.members[k].inputs), self.members[k].bank
+        for name, shares in self._gravity_along(bank).items():
+            g = sum(share * self.gravity[axis] for axis, share in shares.items())
+            if np.any(g):
+                found[name] = g
+        return found
+
+    def inputs_of_each(self) -> list[dict[str, Any]]:
+        """The inputs of all sliders in their frames."""
+        return [self.inputs_of(k) for k in range(len(self.members))]
+
+    @staticmethod
+    def _gravity_along(bank: Any) -> dict[str, dict[str, Any]]:
+        """A slider's gravity by that in the frame of the shaft."""
+        c, s = np.cos(bank), np.sin(bank)
+        return {"g_X": {"g_X": c, "g_Y": -s}, "g_Y": {"g_X": s, "g_Y": c}}
+
+    def evaluate(
+        self,
+        names: str | Sequence[str],
+        given: Mapping[str, Any],
+        accuracy: Any = "standard",
+        threads: int | None = None,
+        out: Any = None,
+    ) -> Any:
+        """`desaxe.evaluate` of the shaft: its state, and inputs that replace those of the sliders."""
+        wanted = (names,) if isinstance(names, str) else several(names)
+        state = state_of(given)
+        here = self.replaced({n: v for n, v in given.items() if n not in STATE and v is not None})
+        with using(self.definitions):
+            found = Values(here._values(wanted, state, accuracy, threads))
+            found.become(units_by_name(found), None)
+        if out is not None:
+            for name, buffer in (out if isinstance(out, Mapping) else {wanted[0]: out}).items():
+                buffer[...] = found[name]
+            return out
+        return found[names] if isinstance(names, str) else found
+
+    def _values(
+        self, names: Sequence[str], state: ShaftState, accuracy: Any, threads: int | None
+    ) -> dict[str, Any]:
+        """The values by name."""
+        terms = {name: self.terms(name, state.slopes) for name in names if name not in FACTS}
+        asked: dict[int, dict[str, None]] = {}
+        for k, name in (key for own in terms.values() for key in own):
+            asked.setdefault(k, {})[name] = None
+        for name in {"status", "margin"} & {*names}:
+            for k in range(len(self.members)):
+                asked.setdefault(k, {})[name] = None
+        values = {}
+        for k, wanted in asked.items():
+            angle = None if state.theta is None else state.theta - (0.0 if k < 0 else self.members[k].firing)
+            inputs = {**self.inputs_of(k), **state.inputs}
+            values[k] = evaluate([*wanted], theta=angle, accuracy=accuracy, threads=threads, **inputs)
+        found = {name: self._fact(name, values, state) for name in names if name in FACTS}
+        for name, own in terms.items():
+            bank = {k: self.members[k].bank for k, _ in own if k != SHAFT} | {SHAFT: 0.0}
+            total = sum(values[k][q] * share.at(bank[k]) for (k, q), share in own.items())
+            found[name] = np.where(state.stalled, np.nan, total) if np.any(state.stalled) else total
+        return _together({name: found[name] for name in names}, state)
+
+    def _fact(self, name: str, values: Mapping[int, Any], state: ShaftState) -> Any:
+        """The speed, the worst status, the least margin."""
+        if name == "omega":
+            return state.omega
+        own = [row[name] for k, row in values.items() if k != SHAFT]
+        if name == "margin":
+            return min(own) if all(np.ndim(v) == 0 for v in own) else np.minimum.reduce(own)
+        worst = max(own) if all(np.ndim(v) == 0 for v in own) else np.maximum.reduce(own)
+        return np.where(state.stalled, 3, worst) if np.any(state.stalled) else worst
+
+    def __repr__(self) -> str:
+        phases = ", ".join(f"{float(np.degrees(member.phase)):.6g}" for member in self.members)
+        return f"{len(self.members)} sliders at {phases} deg"
+
+    def terms(self, name: str, slopes: Mapping[str, Any]) -> Terms:
+        """A quantity or sensitivity as a sum; `slopes`: of the speed by theta, omega0, alpha or omega."""
+        base, parameters = parts(name)
+        terms = self._quantity(base)
+        if len(parameters) > 1 and any(indexed(p)[0] in (*STATE, *POSITION, *GRAVITY) for p in parameters):
+            raise ValueError(f"{name!r}: this derivative is not derived")
+        for parameter in parameters:
+            found: Terms = {}
+            for (k, q), share in terms.items():
+                for own, part in self._by(k, q, share, parameter, slopes):
+                    found[k, own] = Share(*map(sum, zip(found.get((k, own), Share()), part, strict=True)))
+            terms = found
+        return terms
+
+    def _quantity(self, base: str) -> Terms:
+        """A quantity without parameters."""
+        name, index = indexed(base)
+        members = range(len(self.members))
+        if index is not None:
+            self._check(base, index)
+            quantity(name, True)
+            return {(index, name): Share(1.0)}
+        if base in COUPLES:
+            axis = COUPLES[base]
+            return {
+                key: share.times(self.members[key[0]].position) for key, share in self._quantity(axis).items()
+            }
+        if base[:-2] in FORCES:
+            X, Y = f"{base[:-1]}X", f"{base[:-1]}Y"
+            shares = (Share(cos=1.0), Share(sin=1.0 if base == X else -1.0))
+            mine, other = (X, Y) if base == X else (Y, X)
+            return {(k, n): s for k in members for n, s in zip((mine, other), shares, strict=True)}
+        if base in SUMS or base in register().definitions:
+            shaft = [SHAFT] if base in OF_SHAFT else []
+            return {(k, base): Share(1.0) for k in [*members, *shaft]}
+        quantity(base)
+        raise ValueError(f"{base!r} is each slider's own: {base}[0] to {base}[{len(self.members) - 1}]")
+
+    def _check(self, name: str, index: int) -> None:
+        if index >= len(self.members):
+            raise ValueError(f"{name!r}: there are sliders 0 to {len(self.members) - 1}")
+
+    def _by(
+        self, k: int, q: str, share: Share, parameter: str, slopes: Mapping[str, Any]
+    ) -> Iterator[tuple[str, Share]]:
+        """The derivative of a term by a parameter, as terms of the same slider."""
+        name, index = indexed(parameter)
+        if index is not None:
+            self._check(parameter, index)
+        if index not in (None, k):
+            return
+        if parameter == "I_shaft" or (k == SHAFT and name not in STATE):
+            if k == SHAFT and parameter == "I_shaft":
+                yield sensitivity(q, "I_crank"), share
+        elif name in ("phase", "bank") and index is not None:
+            yield sensitivity(q, "theta"), share.times(-1.0)
+            if name == "bank":
+                yield from self._by_bank(k, q, share)
+        elif name == "position" and index is not None:
+            raise ValueError(f"{parameter}: divide the couples' parts by it, they are proportional")
+        elif name in GRAVITY:
+            shares = self._gravity_along(self.members[k].bank)
+            for axis in GRAVITY:
+                yield sensitivity(q, axis), share.times(shares[axis][name])
+        else:
+            yield from self._by_input(q, share, name, slopes)
+
+    def _by_input(
+        self, q: str, share: Share, name: str, slopes: Mapping[str, Any]
+    ) -> Iterator[tuple[str, Share]]:
+        """The derivative by an input of the slider or by the state of the shaft."""
+        if name not in ("omega0", "omega"):
+            by = f"{q}_wrt_{name}" if name not in INPUTS else sensitivity(q, name)
+            quantity(by, True)
+            yield by, share
+        if name in slopes:
+            by = sensitivity(q, "omega")
+            if has(by, True):
+                yield by, share.times(slopes[name])
+        elif name in ("omega0", "omega"):
+            quantity(f"{q}_wrt_{name}", "omega" in slopes)
+            raise ValueError(f"{q}_wrt_{name}: the speed is missing")
+
+    def _by_bank(self, k: int, q: str, share: Share) -> Iterator[tuple[str, Share]]:
+        """The derivative by a bank at one crank angle: it turns the axes of forces, and gravity."""
+        yield q, Share(0.0, share.sin, -1.0 * share.cos)
+        inputs = self.inputs_of(k)
+        for axis, other, side in (("g_X", "g_Y", -1.0), ("g_Y", "g_X", 1.0)):
+            by = sensitivity(q, axis)
+            if other in inputs and has(by, True):
+                yield by, share.times(side * inputs[other])
+
+    def largest(self, name: str, given: Mapping[str, Any]) -> float:
+        """The largest magnitude of what one slider adds to a quantity at these states."""
+        state, sizes = state_of(given), [0.0]
+        for k, q in self.terms(name, state.slopes):
+            if k != SHAFT:
+                angle = state.theta - self.members[k].firing
+                own = evaluate(q, theta=angle, **self.inputs_of(k), **state.inputs)
+                sizes.append(float(np.nanmax(np.abs(own))))
+        return max(sizes)
+
+
+def _moved(member: ShaftSlider, name: str, value: Any) -> ShaftSlider:
+    """A slider at another phase or bank, whose firing moves along, or at another position."""
+    firing = member.firing if name == "position" else member.firing + value - getattr(member, name)
+    return member._replace(**{name: value}, firing=firing)
+
+
+def _together(found: dict[str, Any], state: ShaftState) -> dict[str, Any]:
+    """Arrays of one shape, where anything is one; floats else."""
+    every = (*found.values(), state.theta, state.omega, state.alpha)
+    if any(hasattr(value, "dims") for value in every):
+        return found
+    shape = np.broadcast_shapes(*(np.shape(value) for value in every if value is not None))
+    if not shape:
+        return {n: int(v) if n == "status" else float(v) for n, v in found.items()}
+    return {
+        n: np.array(np.broadcast_to(v, shape), np.int8 if n == "status" else float) for n, v in found.items()
+    }

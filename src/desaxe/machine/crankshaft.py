@@ -1,0 +1,182 @@
+"""`Crankshaft`: several sliders on one crankshaft, as a machine with every public call."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..crankshaft.sliders import Sliders
+from ..crankshaft.sums import GRAVITY, STATE, ShaftSlider
+from ..mechanism.closed import TURN
+from ..mechanism.inputs import Input
+from ..mechanism.messages import errors_in, listed, named
+from ..mechanism.quantity_units import UnitSystem, si_unit
+from ..mechanism.read import read, read_array
+from ..runtime.request import MachineSpeed
+from .arguments import in_si
+from .machine import Machine
+
+SAME = 1e-9  # rad: a firing that is at its phase and bank
+
+
+class Crankshaft(Machine):
+    """Several sliders on one crankshaft: a machine to every call.
+
+        four = dx.Crankshaft(cylinder, phase=[0, 180, 180, 0], firing=[0, 540, 180, 360], spacing="90 mm")
+        four.harmonics("F_inertia_Y")            # of the sum
+        four.evaluate(["T_in", "a_C[2]", "T_in_wrt_AB[2]", "T_in_wrt_phase[1]"], theta=30)
+        four.drive(), four.peak("T_in"), four.counterweight(), four.steady(torque=motor)
+
+    source    a Machine, which all sliders are, or a list of machines with a slider each, 0, 1, ...
+    phase     lag of each: slider k is at its outer dead centre (at ec = 0) where theta = phase[k] + bank[k]
+    bank      angle of each slider's axis, positive like theta, in V engines; or one for all
+    firing    where the cycle of each slider's load begins: phase + bank, plus whole turns in a four-stroke
+              engine; phase + bank if not given
+    spacing   of neighbours along the shaft, or `position`: of each, for the couples
+    I_shaft   moment of inertia of shaft and flywheel, beside those of the sliders' cranks
+    units     as in `Machine`; by default those of the first machine, in which phases are as well
+
+    All sliders turn with one theta and speed of the shaft, and gravity is one for all, in the shaft's frame:
+    +Y is the axis of a slider at bank = 0. Quantities: T_in, F_shaking_X/Y, M_shaking, F_inertia_X/Y,
+    M_inertia, power_in, P_friction, kinetic_energy, potential_energy, M_eff, and those of `define`, are sums;
+    C_inertia_X and C_inertia_Y are the couples of F_inertia_X and F_inertia_Y about the middle of the shaft.
+    Those of one slider, in its own frame, have its index, "a_C[2]". Derivatives are by an input of all
+    ("AB"), of one ("AB[2]"), by "phase[1]" and "bank[1]", with which the firing moves, and "I_shaft".
+    `status` is the worst slider's, `margin` the least.
+
+    Inputs of calls and of `replace` are those of all sliders or, as in `**{"AB[2]": 0.05}`, of one.
+    Raises ValueError and TypeError that name the input.
+    """
+
+    __slots__ = ("members",)
+    members: tuple[Machine, ...]
+
+    def __init__(
+        self,
+        source: Machine | Sequence[Machine],
+        /,
+        *,
+        phase: Any,
+        bank: Any = 0.0,
+        firing: Any = None,
+        spacing: Any = None,
+        position: Any = None,
+        I_shaft: Any = 0.0,
+        units: str | Mapping[str, str] | UnitSystem | None = None,
+    ) -> None:
+        machines = (source,) if isinstance(source, Machine) else tuple(source)
+        wrong = next((one for one in machines if not isinstance(one, Machine) or "sliders" in one), None)
+        if not machines or wrong is not None:
+            raise TypeError("Crankshaft: expected a Machine or a list of them, with one slider each")
+        system = machines[0].units if units is None else UnitSystem.read(units)
+        with errors_in(system):
+            count = max(np.size(phase), len(machines))
+            phases, banks = (_row(n, v, count, system) for n, v in (("phase", phase), ("bank", bank)))
+            fired = phases + banks
+            if firing is not None:
+                fired = _fired(_row("firing", firing, count, system), fired)
+            places = _places(count, spacing, position, system)
+            inertia = read(Input("I_shaft", "kg*m^2", "", 0.0, "a finite moment of inertia >= 0"), I_shaft,
+                           "Crankshaft", system=system)  # fmt: skip
+        if len(machines) not in (1, count):
+            raise ValueError(f"Crankshaft: {len(machines)} machines and {count} phases: give one for each")
+        every = machines * count if len(machines) == 1 else machines
+        shared = {name: _shared(name, every) for name in (*STATE[1:], *GRAVITY)}
+        members = [
+            ShaftSlider(_design_of(machine), *angles)
+            for machine, *angles in zip(every, phases, banks, fired, places, strict=True)
+        ]
+        definitions = tuple(dict.fromkeys(own for machine in machines for own in machine.definitions))
+        sliders = Sliders(members, {n: shared[n] for n in GRAVITY}, inertia, definitions)
+        speeds = {n: MachineSpeed(shared[n]) for n in STATE[1:] if shared[n] is not None}
+        self._fill({**speeds, "sliders": sliders}, system)
+
+    def _fill(self, inputs: dict[str, Any], units: UnitSystem) -> "Crankshaft":
+        """Fill a new crankshaft."""
+        sliders = inputs["sliders"]
+        members = (Machine(sliders.inputs_of(k), units=None) for k in range(len(sliders.members)))
+        object.__setattr__(self, "members", tuple(one.replace(units=units) for one in members))
+        self._set(inputs, units, {}, sliders.definitions)
+        return self
+
+    def replace(self, **inputs: Any) -> "Crankshaft":
+        """The crankshaft with other inputs: of all sliders, "AB", or of one, "AB[2]", "phase[1]", ..."""
+        system = UnitSystem.read(inputs.pop("units", self.units))
+        with errors_in(system):
+            si = {key: in_si(system, key, value) for key, value in inputs.items()}
+            others = {n: v for n, v in si.items() if n not in STATE}
+            sliders = self["sliders"].replaced(others)
+            speeds = {n: self.get(n) for n in STATE[1:]} | {n: v for n, v in si.items() if n in STATE}
+        if si.get("omega") is not None or si.get("omega0") is not None:
+            del speeds["omega0" if si.get("omega") is not None else "omega"]
+        kept = {n: MachineSpeed(v) for n, v in speeds.items() if v is not None}
+        return _restored({**kept, "sliders": sliders}, system)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (self._inputs, self.units)
+
+    def _key(self) -> frozenset[Any]:
+        sliders = self["sliders"]
+        angles = tuple(tuple(map(float, member[1:])) for member in sliders.members)
+        speeds = tuple((name, self.get(name)) for name in STATE)
+        return frozenset([self.members, angles, speeds, sliders.I_shaft])
+
+    def __repr__(self) -> str:
+        return f"crankshaft of {self['sliders']!r}; slider 0:\n{self.members[0]!r}"
+
+    def _repr_html_(self) -> str:
+        return f"<p>crankshaft of {self['sliders']!r}; slider 0:</p>{self.members[0]._repr_html_()}"
+
+
+def _restored(inputs: dict[str, Any], units: UnitSystem) -> Crankshaft:
+    """A crankshaft of checked inputs."""
+    return Crankshaft.__new__(Crankshaft)._fill(inputs, units)
+
+
+def _row(name: str, value: Any, count: int, system: UnitSystem) -> Any:
+    """A number for each slider, in SI units; one number is that of all."""
+    array = np.atleast_1d(read_array(Input(name, si_unit(name), ""), value, system))
+    if array.ndim > 1 or array.size not in (1, count) or not np.isfinite(array).all():
+        raise ValueError(f"{name}: expected a finite number for each of {count} sliders, got {value!r}")
+    return np.broadcast_to(array, (count,)).copy()
+
+
+def _fired(firing: Any, dead: Any) -> Any:
+    """Firings that are whole turns from the dead centres; ValueError that names both."""
+    turns = np.round((firing - dead) / TURN)
+    for k, (own, centre, n) in enumerate(zip(firing, dead, turns, strict=True)):
+        if abs(own - centre - n * TURN) > SAME:
+            angles = listed([named(f"firing[{k}]", own, "g"), named(f"phase[{k}] + bank[{k}]", centre, "g")])
+            raise ValueError(angles + ": they are to be equal but for whole turns")
+    return dead + turns * TURN
+
+
+def _places(count: int, spacing: Any, position: Any, system: UnitSystem) -> Any:
+    """The distances of the sliders from the middle of the shaft."""
+    if spacing is not None and position is not None:
+        raise ValueError("Crankshaft: give spacing=, or position= of each slider, not both")
+    if position is None:
+        step = (
+            0.0 if spacing is None else read(Input("spacing", "m", ""), spacing, "Crankshaft", system=system)
+        )
+        return step * (np.arange(count) - 0.5 * (count - 1))
+    places = _row("position", position, count, system)
+    return places - 0.5 * (places.min() + places.max())
+
+
+def _shared(name: str, machines: Sequence[Machine]) -> Any:
+    """A speed or gravity, which is one for all sliders."""
+    values = [machine.get(name) for machine in machines]
+    if any(np.ndim(value) for value in values):
+        raise ValueError(f"Crankshaft: {name} is an array; a slider is of one design")
+    if any(value != values[0] for value in values):
+        raise ValueError(f"Crankshaft: {name} is one for all sliders, but they have {values}")
+    return values[0]
+
+
+def _design_of(machine: Machine) -> dict[str, Any]:
+    """The inputs of a slider: those of a machine but for what is one for all."""
+    arrays = [name for name, value in machine.items() if np.ndim(value)]
+    if arrays:
+        raise ValueError(f"Crankshaft: {arrays[0]} is an array; a slider is of one design")
+    return {name: value for name, value in machine.items() if name not in (*STATE, *GRAVITY)}

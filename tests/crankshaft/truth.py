@@ -1,0 +1,117 @@
+"""Crankshafts to 60 digits: places of all masses in the frame of the shaft, their momentum and energy.
+
+Nothing is taken from desaxe: a slider is three bodies whose places follow from the loop closure along an axis
+that is turned by its bank; rates are by differences with a third of the digits.
+"""
+
+from typing import Any, NamedTuple
+
+import mpmath
+from mpmath import mp, mpf
+
+DIGITS = 60
+
+
+class TrueSlider(NamedTuple):
+    """A slider: its inputs by name, its angles and its distance from the middle."""
+
+    inputs: dict[str, Any]
+    phase: Any
+    bank: Any
+    position: Any = 0
+    load: Any = None  # force along the slider's axis over theta - phase - bank - 2 pi turns
+    turns: int = 0
+
+    def number(self, name, default=0.0):
+        return mpf(self.inputs.get(name, default))
+
+    def places(self, theta):
+        """The centres of mass of crank, rod, slider as Y + i X in the shaft's frame, and the rod's angle."""
+        turned = mp.expj(self.bank)
+        angle = theta - self.phase - self.bank
+        AB, BC, ec = (self.number(name) for name in ("AB", "BC", "ec"))
+        out = mp.expj(angle)
+        B = AB * out
+        rod = mpmath.mpc(mp.sqrt(BC**2 - (ec + B.imag) ** 2), -(ec + B.imag))
+        crank, along = (
+            self.number("r_crank", self.inputs["AB"] / 2),
+            self.number("r_rod", self.inputs["BC"] / 2) / BC,
+        )
+        return [turned * place for place in (crank * out, B + along * rod, B + rod)], mp.arg(rod) + self.bank
+
+    def force(self, theta):
+        """The load, along its axis, as a complex number of the shaft."""
+        angle = theta - self.phase - self.bank - 2 * mp.pi * self.turns
+        return mpf(0) if self.load is None else self.load(angle) * mp.expj(self.bank)
+
+
+MASSES = ("m_crank", "m_rod", "m_slider")
+
+
+def shaft(sliders, theta, omega, alpha, g=0, I_shaft=0):
+    """All sums at a state; g = g_Y + i g_X."""
+    theta, omega, alpha = mpf(theta), mpf(omega), mpf(alpha)
+    names = ("T_in", "M_eff", "kinetic_energy", "potential_energy", "power_in", "M_shaking", "M_inertia")
+    found = dict.fromkeys((*names, "F", "I", "C"), mpf(0))
+    found["M_eff"] += mpf(I_shaft)
+    found["M_inertia"] -= mpf(I_shaft) * alpha
+    slope = mpf(0)
+    for slider in sliders:
+        h = mpf(10) ** (-mp.dps // 5)
+        steps = [slider.places(theta + k * h) for k in range(-3, 4)]
+        bodies = [
+            (slider.number(m), slider.number(i))
+            for m, i in zip(MASSES, ("I_crank", "I_rod", ""), strict=True)
+        ]
+        turning = [[theta + k * h for k in range(-3, 4)], [angle for _, angle in steps], [mpf(0)] * 7]
+        for n, (mass, inertia) in enumerate(bodies):
+            r, v, a = _rates([places[n] for places, _ in steps], h)
+            _, w, b = _rates(turning[n], h)
+            force = -mass * (v * alpha + a * omega**2)
+            found["M_eff"] += mass * abs(v) ** 2 + inertia * w**2
+            slope += 2 * (mass * (v.real * a.real + v.imag * a.imag) + inertia * w * b)
+            found["I"] += force
+            found["C"] += slider.position * force
+            found["M_inertia"] += _moment(r, force) - inertia * (w * alpha + b * omega**2)
+            found["potential_energy"] -= mass * _dot(g, r)
+            found["T_in"] -= mass * _dot(g, v)
+            found["F"] += mass * g
+            found["M_shaking"] += mass * _moment(r, g)
+            if n == 2:
+                load = slider.force(theta)
+                found["T_in"] -= _dot(load, v)
+                found["F"] += load
+                found["M_shaking"] += _moment(r, load)
+    found["T_in"] += found["M_eff"] * alpha + slope * omega**2 / 2
+    found["kinetic_energy"] = found["M_eff"] * omega**2 / 2
+    found["power_in"] = found["T_in"] * omega
+    found["M_shaking"] += found["M_inertia"]
+    found |= {f"F_shaking_{n}": part for n, part in _axes(found["F"] + found["I"])}
+    found |= {f"F_inertia_{n}": part for n, part in _axes(found.pop("I"))}
+    found |= {f"C_inertia_{n}": part for n, part in _axes(found.pop("C"))}
+    del found["F"]
+    return found
+
+
+def _axes(force):
+    force = mpmath.mpc(force)
+    return ("X", force.imag), ("Y", force.real)
+
+
+def _dot(a, b):
+    a, b = mpmath.mpc(a), mpmath.mpc(b)
+    return a.real * b.real + a.imag * b.imag
+
+
+def _moment(r, force):
+    """y F_X - x F_Y."""
+    r, force = mpmath.mpc(r), mpmath.mpc(force)
+    return r.real * force.imag - r.imag * force.real
+
+
+def _rates(values, h):
+    """The middle one and its first two derivatives, by differences of seven."""
+    a, b, c, d, e, f, g = values
+    first = (45 * (e - c) - 9 * (f - b) + (g - a)) / (60 * h)
+    second = (2 * (a + g) - 27 * (b + f) + 270 * (c + e) - 490 * d) / (180 * h * h)
+    return d, first, second
