@@ -15,6 +15,7 @@ history       histories of angle, speed, quantities and energy
 residual      the energy residual, and a message where it is unusual
 result        the result and its statuses
 slopes        the exact derivatives of a motion by parameters
+tangents      the derivatives of a state and its rates, at an instant
 shifts        how its cuts move with them
 torque_derivative   the derivatives of a torque that is a function
 energy        motions with the crank angle as the independent variable, where time does not enter

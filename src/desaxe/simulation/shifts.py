@@ -5,8 +5,7 @@ Where the acceleration jumps there, omega_p jumps by (alpha before - alpha after
 touches the angle or the standstill there is no such derivative: NaN.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from math import copysign, cos, nan, sin, sqrt
+from math import nan, sqrt
 from typing import Any
 
 import numpy as np
@@ -18,27 +17,22 @@ from .events import V
 from .law import state_of
 from .march import March
 from .result import Event
+from .tangents import Tangents
 
 Array = NDArray[np.float64]
 SAME = 1e-9  # of the accelerations: a jump by less is rounding
 TOUCHED = 1e-6  # of the largest speed, or of its change in the motion's time: less is none
-Values = Callable[..., Mapping[str, Any]]
 
 
 class Shifts:
-    """The shifts of cuts by parameters; `notes` say where derivatives end.
+    """The shifts of cuts by parameters; `notes` say where derivatives end."""
 
-    values  quantities of the design at an angle
-    """
-
-    def __init__(self, run: March, wrt: Sequence[str], values: Values) -> None:
-        self.model, self.duration, self.wrt, self.values = run.model, run.t, wrt, values
+    def __init__(self, run: March, tangents: Tangents) -> None:
+        self.model, self.duration, self.tangents, self.wrt = run.model, run.t, tangents, tangents.wrt
         self.notes: list[str] = []
         self.of_centres: dict[str, Array] = {}
         ends = np.array([*(panel.y for panel in run.panels), run.y]).T
         self.fastest = float(np.nanmax(np.abs(state_of(self.model, *ends[: V + 1]).omega)))
-        arc = self.model.coordinate
-        self.of_limits = [self.limit(end) for end in (arc.first, arc.last)] if arc.half else []
 
     # ---- jumps ------------------------------------------------------------------------------
 
@@ -112,18 +106,15 @@ class Shifts:
 
     # ---- angles that move ----------------------------------------------------------------------
 
-    def _by_lengths(self, slopes: Mapping[str, float]) -> Array:
-        return np.array([slopes.get(p, 0.0) for p in self.wrt])
-
     def kink(self, curve: Curve, theta: float) -> Array:
         """The shift of a kink of a load by each parameter: one over the slider moves with the lengths."""
         if not isinstance(curve, PositionCurve):
-            return self._by_lengths({})
+            return self.tangents.by_lengths({})
         load = curve.load
-        known = self.values(load.motion(("theta", *LENGTHS)), theta)
+        known = self.tangents.values(load.motion(("theta", *LENGTHS)), theta)
         numbers = {name: float(value) for name, value in known.items()}
         along = float(load.moved("theta", numbers))
-        return self._by_lengths({p: -float(load.moved(p, numbers)) / along for p in LENGTHS})
+        return self.tangents.by_lengths({p: -float(load.moved(p, numbers)) / along for p in LENGTHS})
 
     def dead_centre(self, event: Event) -> Array:
         """The shift of a dead centre by each parameter: the same in every turn."""
@@ -132,14 +123,6 @@ class Shifts:
         return self.of_centres[event.which]
 
     def _dead_centre(self, theta: float) -> Array:
-        known = self.values(("Y_wrt_theta_theta", *(f"Y_wrt_theta_{p}" for p in LENGTHS)), theta)
+        known = self.tangents.values(("Y_wrt_theta_theta", *(f"Y_wrt_theta_{p}" for p in LENGTHS)), theta)
         bend = float(known["Y_wrt_theta_theta"])
-        return self._by_lengths({p: -float(known[f"Y_wrt_theta_{p}"]) / bend for p in LENGTHS})
-
-    def limit(self, theta: float) -> Array:
-        """The shift of a limit angle, at which ec + AB sin(theta) = BC or -BC; NaN at a change point."""
-        ec, AB, _ = self.model.lengths
-        side, arm = copysign(1.0, ec + AB * sin(theta)), AB * cos(theta)
-        if abs(arm) <= TOUCHED * AB:
-            return self._by_lengths(dict.fromkeys(LENGTHS, nan))
-        return self._by_lengths({"ec": -1.0 / arm, "AB": -sin(theta) / arm, "BC": side / arm})
+        return self.tangents.by_lengths({p: -float(known[f"Y_wrt_theta_{p}"]) / bend for p in LENGTHS})

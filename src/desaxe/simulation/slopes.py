@@ -3,13 +3,8 @@
 In q and v = sqrt(M) omega (see `law`) a motion is smooth up to its limit angles, and so are its derivatives
 at a fixed time. With q' = omega/(dtheta/dq) and v' = Q/sqrt(M) they obey linear equations, solved like the
 motion itself by collocation on each panel, for both starts and for each parameter as right-hand sides of one
-matrix; panels are halved where they do not resolve them. Friction takes the torque k N, of the normal force N
-without friction at the acceleration alpha, and
-
-    M alpha + h + k N = Q,    k = mu s Y'/(1 - mu s lean),    lean = branch tan(phi),
-
-with s the product of the signs of N and of the slider's velocity (paper C, link 4). At a cut that moves with
-a parameter, v_p jumps (`shifts`).
+matrix; panels are halved where they do not resolve them. At a cut that moves with a parameter, v_p jumps
+(`shifts`).
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,9 +14,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.evaluate import evaluate
-from ..mechanism.catalogue import has
-from .drive import Slopes
 from .events import Q, V
 from .history import Motion
 from .law import Law
@@ -29,12 +21,11 @@ from .march import March
 from .panel import INTEGRAL, NODES, PLACES, RUNNING, SERIES, basis
 from .result import FAILED, JAMS, LIMIT, SENSITIVITIES, Event, Simulation
 from .shifts import Shifts
+from .tangents import STARTS, Tangents
 
 Array = NDArray[np.float64]
-STARTS = ("theta0", "omega_start")
-CREEP = 1e-100  # rad/s: a load knows the direction of the crank, inertia does not act
 BARELY = 1e-30  # rad/s: turning, for friction; without an effect of its own
-RESOLVED = 1e-11  # of a series: its last terms, at most
+RESOLVED = 1e-9  # of a series: its last terms, at most
 LEAST = 1e-12  # of a column's largest coefficient: a panel with less need not resolve it
 AT_ONCE = 1000  # panels whose matrices are in memory
 HALVINGS = 10  # of a panel of the motion, at most
@@ -77,125 +68,15 @@ class Stretch(NamedTuple):
 
 
 class MotionSlopes:
-    """The derivatives of one motion by parameters.
-
-    Derivatives of what depends on q, v and p are rows: by q, by v and by each parameter at fixed q and v.
-
-    inputs  of the mechanism: numbers, and loads that vary with the motion
-    """
+    """The derivatives of one motion by parameters; inputs: of the mechanism, for `tangents`."""
 
     def __init__(self, run: March, wrt: Sequence[str], inputs: Mapping[str, Any]) -> None:
-        self.run, self.model, self.wrt, self.inputs = run, run.model, tuple(wrt), inputs
-        self.of_design = [p for p in wrt if p not in (*STARTS, "torque")]
-        self.shifts = Shifts(run, self.wrt, self.values)
+        self.run, self.wrt, self.tangents = run, tuple(wrt), Tangents(run.model, wrt, inputs)
+        self.shifts = Shifts(run, self.tangents)
         self.motion = Motion.of(run)
         self.ends_at_limit = run.status == LIMIT and bool(run.model.coordinate.half)
         self.pieces = self._stretches()
         self.course = self._resolved()
-
-    def values(
-        self, names: Sequence[str], theta: Any, omega: Any = CREEP, alpha: Any = 0.0, mu: float = 0.0
-    ) -> dict[str, Array]:
-        """Quantities along the motion; loads see the direction of the crank, at rest too."""
-        state = {"theta": theta, "omega": omega, "alpha": alpha}
-        found = evaluate(list(names), **{**self.inputs, **state, "mu": mu})
-        return {name: np.broadcast_to(value, np.shape(theta)) for name, value in found.items()}
-
-    # ---- quantities and their derivatives ---------------------------------------------------------
-
-    def _names(self, name: str, *state: str) -> list[str]:
-        """A quantity and its derivatives by these variables of the state and by the inputs."""
-        slopes = [_slope(name, p) for p in ("theta", *state, *self.of_design) if p != "mu"]
-        return [name, *(slope for slope in slopes if has(slope, True))]
-
-    def _rows(self, name: str, known: Mapping[str, Array], by_theta: Array, by_omega: Any = None) -> Array:
-        """The derivatives of a quantity, from those of angle and speed."""
-        rows = known[_slope(name, "theta")] * by_theta
-        if by_omega is not None:
-            rows = rows + known[_slope(name, "omega")] * by_omega
-        for k, p in enumerate(self.wrt, 2):
-            if p in self.of_design and p != "mu":
-                rows[k] += known.get(_slope(name, p), 0.0)
-        return rows
-
-    def angles(self, q: Any) -> tuple[Array, Array, Array]:
-        """The crank angle, its derivatives, and those of dtheta/dq."""
-        arc, rows = self.model.coordinate, np.zeros((2, 2 + len(self.wrt), *np.shape(q)))
-        rows[0, 0] = 1.0
-        if arc.half:
-            sine, cosine = np.sin(q), np.cos(q)
-            first, last = self.shifts.of_limits
-            middle, half = 0.5 * (first + last), 0.5 * (last - first)
-            rows[0, 0], rows[1, 0] = arc.half * cosine, -arc.half * sine
-            rows[0, 2:] = np.multiply.outer(half, sine) + middle.reshape(-1, *[1] * np.ndim(q))
-            rows[1, 2:] = np.multiply.outer(half, cosine)
-        return np.asarray(arc.theta(q)), rows[0], rows[1]
-
-    def speeds(self, q: Array, v: Array) -> tuple[Array, Array]:
-        """The derivatives of angle and speed."""
-        theta, by_theta, _ = self.angles(q)
-        known = self.values(self._names("M_eff"), theta)
-        root = np.sqrt(known["M_eff"])
-        rows = -v / root * (self._rows("M_eff", known, by_theta) / (2.0 * known["M_eff"]))
-        rows[1] += 1.0 / root
-        return by_theta, rows
-
-    def _rates(self, t: Array, q: Array, v: Array, signs: Array) -> Array:
-        """The derivatives of the rates of q and v: two rows of them.
-
-        signs   of the slider's velocity over that of the crank, and of the normal force, held under friction
-        """
-        theta, by_theta, bent = self.angles(q)
-        known = self.values([*self._names("M_eff"), *self._names("T_in")], theta, np.copysign(CREEP, v))
-        inertia, slope = known["M_eff"], by_theta[0]
-        root, log = np.sqrt(inertia), self._rows("M_eff", known, by_theta) / (2.0 * inertia)
-        omega = v / root
-        by_omega = -omega * log
-        by_omega[1] += 1.0 / root
-        flat = self.model.drive.torque.slopes(*(part.reshape(-1) for part in (t, theta, omega)))
-        torque = Slopes(*(np.broadcast_to(part, t.size).reshape(t.shape) for part in flat))
-        of_torque = torque.theta * by_theta + torque.omega * by_omega
-        for k, p in enumerate(self.wrt, 2):
-            of_torque[k] += p == "torque"
-        push = torque.value - known["T_in"]
-        of_push = of_torque - self._rows("T_in", known, by_theta)
-        if self.model.mu or "mu" in self.wrt:
-            state = _State(theta, omega, by_theta, by_omega)
-            taken, of_taken = self._friction(state, inertia, torque.value, of_torque, signs)
-            push, of_push = push - taken, of_push - of_taken
-        return np.stack([(by_omega - omega * bent / slope) / slope, (of_push - push * log) / root])
-
-    def _friction(
-        self, state: "_State", inertia: Array, torque: Any, of_torque: Array, signs: Array
-    ) -> tuple[Array, Array]:
-        """The torque that friction takes, and its derivatives."""
-        theta, omega, by_theta, by_omega = state
-        names = ["N_C_wrt_alpha", *self._names("phi"), *self._names("Y_wrt_theta")]
-        known = self.values(["T_in", "N_C", *names], theta, omega)
-        mu, normal, by_alpha = self.model.mu, known["N_C"], known["N_C_wrt_alpha"]
-        side = signs[0] * signs[1]
-        lean, travel = self.model.branch * np.tan(known["phi"]), known["Y_wrt_theta"]
-        room = 1.0 - mu * side * lean
-        arm = mu * side * travel / room
-        alpha = (torque - known["T_in"] - arm * normal) / (inertia + arm * by_alpha)
-        names = [*self._names("T_in", "omega"), *self._names("N_C", "omega")]
-        known |= self.values(names, theta, omega, alpha)
-        if not mu:  # no sign is held
-            side = np.sign(travel * omega * known["N_C"])
-        of_mu = np.array([0.0, 0.0, *(float(p == "mu") for p in self.wrt)]).reshape(-1, *[1] * theta.ndim)
-        of_lean = self.model.branch / np.cos(known["phi"]) ** 2 * self._rows("phi", known, by_theta)
-        of_arm = side * (of_mu * travel + mu * self._rows("Y_wrt_theta", known, by_theta)) / room
-        of_arm += arm * side * (of_mu * lean + mu * of_lean) / room
-        of_normal = self._rows("N_C", known, by_theta, by_omega)
-        of_alpha = of_torque - self._rows("T_in", known, by_theta, by_omega)
-        of_alpha = (of_alpha - of_arm * known["N_C"] - arm * of_normal) / (inertia + arm * by_alpha)
-        return arm * known["N_C"], of_arm * known["N_C"] + arm * (of_normal + by_alpha * of_alpha)
-
-    def _energy(self, q: Any, v: Any, y: Array) -> Array:
-        """The derivatives of the energy by the parameters at a fixed time; y: those of q and v."""
-        theta, by_theta, _ = self.angles(q)
-        rows = self._rows("potential_energy", self.values(self._names("potential_energy"), theta), by_theta)
-        return np.asarray(rows[0] * y[0] + v * y[1] + rows[2:])
 
     # ---- panels -----------------------------------------------------------------------------
 
@@ -230,7 +111,7 @@ class MotionSlopes:
         panels = [panel for panel in self.run.panels if panel.stop > panel.start] or self.run.panels[:1]
         pieces = [Stretch(panel.law, panel.start, panel.stop, panel.y) for panel in panels]
         last = pieces.pop()
-        if self.ends_at_limit and self.model.mu:
+        if self.ends_at_limit and self.run.model.mu:
             end = copysign(0.5 * pi, self.run.y[Q])
             while pieces and pieces[-1].law is last.law and abs(end - last.y[Q]) < WELL_BEFORE:
                 last = pieces.pop()._replace(stop=last.stop)
@@ -246,7 +127,7 @@ class MotionSlopes:
         """The series on panels for the starts (1, 0) and (0, 1) and for each parameter."""
         laws = [self.pieces[k].law for k in piece.tolist()]
         signs = np.array([[law.direction * law.side, law.pressed] for law in laws]).reshape(-1, 2)
-        rates = self._rates(*self._nodes(start, h), signs.T[:, :, None])
+        rates = self.tangents.rates(*self._nodes(start, h), signs.T[:, :, None])
         jacobian, forcing = rates[:, :2].transpose(2, 0, 1, 3), rates[:, 2:].transpose(2, 0, 3, 1)
         width = h[:, None, None, None]
         matrix = -width[..., None] * RUNNING[:, None, :] * jacobian[:, :, None]
@@ -279,14 +160,14 @@ class MotionSlopes:
     def _start(self) -> Array:
         """q_p and v_p at the start."""
         q, v = self.pieces[0].y[:2]
-        by_theta, by_omega = self.speeds(q, v)
-        theta, omega = (np.array([float(p == name) for p in self.wrt]) for name in STARTS)
+        by_theta, by_omega = self.tangents.speeds(q, v)
+        theta, omega = (self.tangents.flags(name) for name in STARTS)
         of_q = (theta - by_theta[2:]) / by_theta[0]
         return np.stack([of_q, (omega - by_omega[0] * of_q - by_omega[2:]) / by_omega[1]])
 
     def _angle(self, q: float, y: Array) -> Array:
         """theta_p where q is known and y its derivatives and those of v."""
-        _, by_theta, _ = self.angles(q)
+        _, by_theta, _ = self.tangents.angles(q)
         return np.asarray(by_theta[0] * y[0] + by_theta[2:])
 
     # ---- results ---------------------------------------------------------------------------------
@@ -294,7 +175,7 @@ class MotionSlopes:
     def histories(self, t: Array, q: Array, v: Array) -> tuple[Array, Array]:
         """theta_p and omega_p at instants, a row for each parameter."""
         y = self.course.at(t)
-        theta, omega = (rows[0] * y[0] + rows[1] * y[1] + rows[2:] for rows in self.speeds(q, v))
+        theta, omega = (rows[0] * y[0] + rows[1] * y[1] + rows[2:] for rows in self.tangents.speeds(q, v))
         return theta, omega
 
     def of_events(self) -> list[Array]:
@@ -311,7 +192,7 @@ class MotionSlopes:
             return np.asarray(-y[0] / self._rate_at_limit())
         if event.kind in ("angle", "limit"):
             last = event.kind == "limit"
-            shift = self.shifts.limit(event.theta) if last else np.zeros(len(self.wrt))
+            shift = self.tangents.limit(event.theta) if last else np.zeros(len(self.wrt))
             return self.shifts.passage(event.t, event.omega, shift, theta)
         if event.kind == "standstill":
             piece = next(one for one in self.pieces if one.stop >= event.t)
@@ -330,7 +211,10 @@ class MotionSlopes:
 
     def _break_away(self, event: Event, theta: Array) -> Array:
         """dt/dp of the instant from which the torque moves the crank: T = T_in at barely a speed."""
-        torque, after = self.model.drive.torque, next((p for p in self.pieces if p.start >= event.t), None)
+        torque, after = (
+            self.run.model.drive.torque,
+            next((p for p in self.pieces if p.start >= event.t), None),
+        )
         by_time = torque.by_time(event.t, event.theta, 0.0)
         if after is None or by_time != by_time:
             self.shifts.notes.append(
@@ -341,8 +225,8 @@ class MotionSlopes:
             return np.zeros(len(self.wrt))  # the torque jumps at an instant of its own
         middle = np.array([0.5 * (after.start + after.stop)])
         direction = copysign(BARELY, self.motion.at(middle)[1][V, 0])
-        names = [f"T_in_wrt_{p}" for p in ("theta", *self.of_design)]
-        known = self.values(names, event.theta, direction, mu=self.model.mu)
+        names = [f"T_in_wrt_{p}" for p in ("theta", *self.tangents.of_design)]
+        known = self.tangents.values(names, event.theta, direction, mu=self.run.model.mu)
         t, angle, omega = (np.array([number]) for number in (event.t, event.theta, 0.0))
         by_theta = np.ravel(torque.slopes(t, angle, omega).theta)[0] - known["T_in_wrt_theta"]
         pushes = [float(p == "torque") - known.get(f"T_in_wrt_{p}", 0.0) for p in self.wrt]
@@ -366,28 +250,14 @@ class MotionSlopes:
         if self.ends_at_limit:
             t, q, v = (rows[0] for rows in self._nodes(self.course.start[last], self.course.h[last]))
         power = self.pieces[-1].law.rates(t, q, v).work
-        end = np.array([*self._energy(q, v, self.course.at(t)), power + np.zeros(t.size)])
+        end = np.array([*self.tangents.energy(q, v, self.course.at(t)), power + np.zeros(t.size)])
         if self.ends_at_limit:
             s = 2.0 * (self.run.t - self.course.start[last]) / self.course.h[last] - 1.0
             end = end @ SERIES.T @ basis(s, NODES - 1)
         begin = self.pieces[0].y
         return np.asarray(
-            end[:-1, 0] + end[-1, 0] * of_end - self._energy(begin[Q], begin[V], self.course.y[0])
+            end[:-1, 0] + end[-1, 0] * of_end - self.tangents.energy(begin[Q], begin[V], self.course.y[0])
         )
-
-
-class _State(NamedTuple):
-    """Angle, speed and their derivatives."""
-
-    theta: Array
-    omega: Array
-    by_theta: Array
-    by_omega: Array
-
-
-def _slope(name: str, parameter: str) -> str:
-    """The name of a derivative; of a derivative the second one."""
-    return f"{name}_{parameter}" if "_wrt_" in name else f"{name}_wrt_{parameter}"
 
 
 def add_slopes(result: Simulation, run: March, wrt: Sequence[str], inputs: Mapping[str, Any]) -> None:

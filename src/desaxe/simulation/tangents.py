@@ -1,0 +1,170 @@
+"""The derivatives of a state and its rates by q, v and parameters: exact, at one instant.
+
+Friction takes the torque k N, of the normal force N without friction at the acceleration alpha:
+
+    M alpha + h + k N = Q,    k = mu s Y'/(1 - mu s lean),    lean = branch tan(phi),
+
+with s the product of the signs of N and of the slider's velocity (paper C, link 4).
+"""
+
+from collections.abc import Mapping, Sequence
+from math import copysign, cos, nan, sin
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..evaluation.evaluate import evaluate
+from ..mechanism.catalogue import has
+from ..mechanism.names import LENGTHS
+from .drive import Slopes
+from .model import Model
+
+Array = NDArray[np.float64]
+STARTS = ("theta0", "omega_start")
+CREEP = 1e-100  # rad/s: a load knows the direction of the crank, inertia does not act
+CHANGE_POINT = 1e-6  # of the crank: so nearly across the guide a limit angle has no derivative
+
+
+class Tangents:
+    """The derivatives of a design's state, in rows: by q, by v, and by each parameter at fixed q and v.
+
+    inputs  of the mechanism: numbers, and loads that vary with the motion
+    """
+
+    def __init__(self, model: Model, wrt: Sequence[str], inputs: Mapping[str, Any]) -> None:
+        self.model, self.wrt, self.inputs = model, tuple(wrt), inputs
+        self.of_design = [p for p in wrt if p not in (*STARTS, "torque")]
+        arc = model.coordinate
+        self.of_limits = [self.limit(end) for end in (arc.first, arc.last)] if arc.half else []
+
+    def flags(self, *names: str) -> Array:
+        """1 for the parameters of these names, 0 for others."""
+        return np.array([float(p in names) for p in self.wrt])
+
+    def by_lengths(self, slopes: Mapping[str, float]) -> Array:
+        """Derivatives by the parameters of what depends on lengths alone."""
+        return np.array([slopes.get(p, 0.0) for p in self.wrt])
+
+    def limit(self, theta: float) -> Array:
+        """The shift of a limit angle, at which ec + AB sin(theta) = BC or -BC; NaN at a change point."""
+        ec, AB, _ = self.model.lengths
+        side, arm = copysign(1.0, ec + AB * sin(theta)), AB * cos(theta)
+        if abs(arm) <= CHANGE_POINT * AB:
+            return self.by_lengths(dict.fromkeys(LENGTHS, nan))
+        return self.by_lengths({"ec": -1.0 / arm, "AB": -sin(theta) / arm, "BC": side / arm})
+
+    def values(
+        self, names: Sequence[str], theta: Any, omega: Any = CREEP, alpha: Any = 0.0, mu: float = 0.0
+    ) -> dict[str, Array]:
+        """Quantities along the motion; loads see the direction of the crank, at rest too."""
+        state = {"theta": theta, "omega": omega, "alpha": alpha}
+        found = evaluate(list(names), **{**self.inputs, **state, "mu": mu})
+        return {name: np.broadcast_to(value, np.shape(theta)) for name, value in found.items()}
+
+    def _names(self, name: str, *state: str) -> list[str]:
+        """A quantity and its derivatives by these variables of the state and by the inputs."""
+        slopes = [_slope(name, p) for p in ("theta", *state, *self.of_design) if p != "mu"]
+        return [name, *(slope for slope in slopes if has(slope, True))]
+
+    def _rows(self, name: str, known: Mapping[str, Array], by_theta: Array, by_omega: Any = None) -> Array:
+        """The derivatives of a quantity, from those of angle and speed."""
+        rows = known[_slope(name, "theta")] * by_theta
+        if by_omega is not None:
+            rows = rows + known[_slope(name, "omega")] * by_omega
+        for k, p in enumerate(self.wrt, 2):
+            if p in self.of_design and p != "mu":
+                rows[k] += known.get(_slope(name, p), 0.0)
+        return rows
+
+    def angles(self, q: Any) -> tuple[Array, Array, Array]:
+        """The crank angle, its derivatives, and those of dtheta/dq."""
+        arc, rows = self.model.coordinate, np.zeros((2, 2 + len(self.wrt), *np.shape(q)))
+        rows[0, 0] = 1.0
+        if arc.half:
+            sine, cosine = np.sin(q), np.cos(q)
+            first, last = self.of_limits
+            middle, half = 0.5 * (first + last), 0.5 * (last - first)
+            rows[0, 0], rows[1, 0] = arc.half * cosine, -arc.half * sine
+            rows[0, 2:] = np.multiply.outer(half, sine) + middle.reshape(-1, *[1] * np.ndim(q))
+            rows[1, 2:] = np.multiply.outer(half, cosine)
+        return np.asarray(arc.theta(q)), rows[0], rows[1]
+
+    def speeds(self, q: Array, v: Array) -> tuple[Array, Array]:
+        """The derivatives of angle and speed."""
+        theta, by_theta, _ = self.angles(q)
+        known = self.values(self._names("M_eff"), theta)
+        root = np.sqrt(known["M_eff"])
+        rows = -v / root * (self._rows("M_eff", known, by_theta) / (2.0 * known["M_eff"]))
+        rows[1] += 1.0 / root
+        return by_theta, rows
+
+    def rates(self, t: Array, q: Array, v: Array, signs: Array) -> Array:
+        """The derivatives of the rates of q and v: two rows of them.
+
+        signs   of the slider's velocity over that of the crank, and of the normal force, held under friction
+        """
+        theta, by_theta, bent = self.angles(q)
+        known = self.values([*self._names("M_eff"), *self._names("T_in")], theta, np.copysign(CREEP, v))
+        inertia, slope = known["M_eff"], by_theta[0]
+        root, log = np.sqrt(inertia), self._rows("M_eff", known, by_theta) / (2.0 * inertia)
+        omega = v / root
+        by_omega = -omega * log
+        by_omega[1] += 1.0 / root
+        flat = self.model.drive.torque.slopes(*(part.reshape(-1) for part in (t, theta, omega)))
+        torque = Slopes(*(np.broadcast_to(part, t.size).reshape(t.shape) for part in flat))
+        of_torque = torque.theta * by_theta + torque.omega * by_omega
+        of_torque[2:] += self.flags("torque").reshape(-1, *[1] * t.ndim)
+        push = torque.value - known["T_in"]
+        of_push = of_torque - self._rows("T_in", known, by_theta)
+        if self.model.mu or "mu" in self.wrt:
+            state = _State(theta, omega, by_theta, by_omega)
+            taken, of_taken = self._friction(state, inertia, torque.value, of_torque, signs)
+            push, of_push = push - taken, of_push - of_taken
+        return np.stack([(by_omega - omega * bent / slope) / slope, (of_push - push * log) / root])
+
+    def _friction(
+        self, state: "_State", inertia: Array, torque: Any, of_torque: Array, signs: Array
+    ) -> tuple[Array, Array]:
+        """The torque that friction takes, and its derivatives."""
+        theta, omega, by_theta, by_omega = state
+        names = ["N_C_wrt_alpha", *self._names("phi"), *self._names("Y_wrt_theta")]
+        known = self.values(["T_in", "N_C", *names], theta, omega)
+        mu, normal, by_alpha = self.model.mu, known["N_C"], known["N_C_wrt_alpha"]
+        side = signs[0] * signs[1]
+        lean, travel = self.model.branch * np.tan(known["phi"]), known["Y_wrt_theta"]
+        room = 1.0 - mu * side * lean
+        arm = mu * side * travel / room
+        alpha = (torque - known["T_in"] - arm * normal) / (inertia + arm * by_alpha)
+        names = [*self._names("T_in", "omega"), *self._names("N_C", "omega")]
+        known |= self.values(names, theta, omega, alpha)
+        if not mu:  # no sign is held
+            side = np.sign(travel * omega * known["N_C"])
+        of_mu = np.array([0.0, 0.0, *self.flags("mu")]).reshape(-1, *[1] * theta.ndim)
+        of_lean = self.model.branch / np.cos(known["phi"]) ** 2 * self._rows("phi", known, by_theta)
+        of_arm = side * (of_mu * travel + mu * self._rows("Y_wrt_theta", known, by_theta)) / room
+        of_arm += arm * side * (of_mu * lean + mu * of_lean) / room
+        of_normal = self._rows("N_C", known, by_theta, by_omega)
+        of_alpha = of_torque - self._rows("T_in", known, by_theta, by_omega)
+        of_alpha = (of_alpha - of_arm * known["N_C"] - arm * of_normal) / (inertia + arm * by_alpha)
+        return arm * known["N_C"], of_arm * known["N_C"] + arm * (of_normal + by_alpha * of_alpha)
+
+    def energy(self, q: Any, v: Any, y: Array) -> Array:
+        """The derivatives of the energy by the parameters at a fixed time; y: those of q and v."""
+        theta, by_theta, _ = self.angles(q)
+        rows = self._rows("potential_energy", self.values(self._names("potential_energy"), theta), by_theta)
+        return np.asarray(rows[0] * y[0] + v * y[1] + rows[2:])
+
+
+class _State(NamedTuple):
+    """Angle, speed and their derivatives."""
+
+    theta: Array
+    omega: Array
+    by_theta: Array
+    by_omega: Array
+
+
+def _slope(name: str, parameter: str) -> str:
+    """The name of a derivative; of a derivative the second one."""
+    return f"{name}_{parameter}" if "_wrt_" in name else f"{name}_wrt_{parameter}"
