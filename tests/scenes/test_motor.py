@@ -38,7 +38,7 @@ def test_the_steady_states_of_a_scene_are_those_of_the_call():
     for name in ("fluctuation", "power_mean", "work", "multiplier", "period"):
         np.testing.assert_allclose(found[name], known[name], rtol=1e-12)
     text = result.report()
-    assert "Steady state on <induction motor" in text
+    assert "Steady state\n  On <induction motor" in text
     assert f"{float(found['omega_mean'][1, 1]):.6g}" in text
     assert max(map(len, text.splitlines())) <= 100
 

@@ -13,6 +13,7 @@ from ..mechanism.quantity_units import SI, UnitSystem
 from ..units.system import Conversion
 
 INLINE = 24  # points that stand in the scene itself
+PLACES = {"over_theta": "theta", "over_Y": "Y", "over_stroke": "distance"}  # keys of the unit of places
 
 
 class LoadTable(NamedTuple):
@@ -23,7 +24,7 @@ class LoadTable(NamedTuple):
     text: str = ""
 
 
-def load_table(name: str, load: Load, scene: Path, units: UnitSystem = SI) -> LoadTable:
+def load_table(name: str, load: Load, scene: Path, units: UnitSystem = SI, inline: bool = False) -> LoadTable:
     """The table of a load for a scene at this path; TypeError for a load that is a function.
 
     Points are in the units of the scene where these stand for the same doubles, else in SI units with all
@@ -50,11 +51,27 @@ def load_table(name: str, load: Load, scene: Path, units: UnitSystem = SI) -> Lo
         more["period"] = own_period[0] if along == si else f"{own_period[0]!r} {along}"
     more |= {first: along} | ({"value": unit} if unit is not None else {})
     rows = list(zip(places, *ways, strict=True))
-    if len(rows) <= INLINE:
+    if inline or len(rows) <= INLINE:
         return LoadTable({over: [list(row) for row in rows], **more})
     file = scene.with_name(f"{scene.stem}_{name}.csv")
     lines = [",".join([f"{first} [{along}]", *heads]), *(",".join(map(repr, row)) for row in rows)]
     return LoadTable({over: file.name, **more}, file, "\n".join(lines) + "\n")
+
+
+def load_call(name: str, load: Load, units: UnitSystem) -> str:
+    """The call of Python that makes a load again; its repr where it is a function."""
+    try:
+        data = load_table(name, load, Path("scene.toml"), units, inline=True).data
+    except TypeError:
+        return repr(load)
+    over, rows = next(iter(data.items()))
+    along, value = (data.pop(key, None) for key in (PLACES[over], "value"))
+    columns = [
+        [f"{x!r} {unit}" if unit else x for x in column]
+        for column, unit in zip(zip(*rows, strict=True), (along, value, value), strict=False)
+    ]
+    options = [f"{key}={option!r}" for key, option in data.items() if key != over]
+    return f"desaxe.{over}({', '.join([*map(repr, columns), *options])})"
 
 
 def _in_unit(

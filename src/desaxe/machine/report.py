@@ -8,7 +8,7 @@ from typing import Any
 
 from ..loads.load import Load
 from ..mechanism.names import LOADS
-from ..mechanism.own import using
+from ..mechanism.own import Definition, used_by, using
 from ..mechanism.slips import warn_of_slips
 from ..scenes.document.content import DocumentContext, document_of, require_drawing
 from ..scenes.document.spread import read_tolerances
@@ -16,7 +16,10 @@ from ..scenes.document.write import require_document, write_document
 from ..scenes.run import compute
 from ..support.files import as_path
 from ..support.progress import Steps
+from .load_tables import load_call, motor_table
+from .scenes import with_inputs
 
+FLUCTUATION = 0.03  # of the speed, for the flywheel
 MOTION, FORCES, STANDING = ("Y", "V_C", "a_C"), ("T_in", "N_C"), ("Y", "phi")
 
 
@@ -45,8 +48,10 @@ def write_report(
         with using(content.definitions):
             found = compute(content, Steps(0, None), overwrite)
     told = tuple(str(one.message) for one in heard if one.category.__module__.startswith("desaxe."))
-    asked = DocumentContext(_command(machine, place, outputs, tolerances, more), told, halves, fluctuation)
     with using(content.definitions):
+        defined = [_definition(one) for one in used_by(content.outputs)]
+        command = _command(machine, place, outputs, tolerances, fluctuation, more)
+        asked = DocumentContext("\n".join([*defined, command]), told, halves, fluctuation)
         return write_document(document_of(content, found, scene.shown_in, asked), place, overwrite)
 
 
@@ -58,21 +63,33 @@ def _usual(machine: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _command(
-    machine: Any, path: Path, outputs: Any, tolerances: Mapping[str, Any], more: Mapping[str, Any]
+    machine: Any,
+    path: Path,
+    outputs: Any,
+    tolerances: Mapping[str, Any],
+    fluctuation: float,
+    more: Mapping[str, Any],
 ) -> str:
-    """The call that makes the report again."""
-    given = [f"{name}={_written(machine, name, value)}" for name, value in machine.in_units().items()]
+    """The calls that make the report again; loads that are functions stand as their repr."""
+    machine, rest = with_inputs(machine, more)
+    if "steady" in rest:
+        rest["steady"] = {name: motor_table(value) for name, value in rest["steady"].items()}
+    inputs = [f"{name}={_written(machine, name, value)}" for name, value in machine.in_units().items()]
     units = [f"units={machine.units!r}"] if machine.units else []
-    told = [] if outputs is None else [f"outputs={outputs!r}"]
-    told += [f"tolerances={dict(tolerances)!r}"] if tolerances else []
-    told += [f"{name}={value!r}" for name, value in more.items()]
-    return (
-        f"machine = desaxe.Machine({', '.join([*given, *units])})\n"
-        f"machine.report({', '.join([repr(str(path)), *told])})"
-    )
+    options = [] if outputs is None else [f"outputs={outputs!r}"]
+    options += [f"tolerances={dict(tolerances)!r}"] if tolerances else []
+    options += [f"fluctuation={fluctuation!r}"] if fluctuation != FLUCTUATION else []
+    options += [f"{name}={value!r}" for name, value in rest.items()]
+    made = f"machine = desaxe.Machine({', '.join([*inputs, *units])})"
+    return f"{made}\nmachine.report({', '.join([repr(str(path)), *options])})"
+
+
+def _definition(one: Definition) -> str:
+    options = {"unit": one.unit, "meaning": one.meaning, **dict(one.constants)}
+    return f"desaxe.define({one.name!r}, {one.expression!r}, **{options!r})"
 
 
 def _written(machine: Any, name: str, value: Any) -> str:
     if isinstance(value, Load):
-        return value.told(machine.units.of(name))
+        return load_call(name, value, machine.units)
     return repr(value.tolist()) if hasattr(value, "tolist") else repr(value)

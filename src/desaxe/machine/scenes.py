@@ -43,7 +43,7 @@ def inputs_of_scene(
 
 def scene_of(machine: Any, outputs: Any, more: Mapping[str, Any]) -> Any:
     """The scene of a machine; loads that vary with the motion are in it as they are."""
-    machine, more = _with_inputs(machine, more)
+    machine, more = with_inputs(machine, more)
     return scene(_data(machine, outputs, more, split(machine)[1]))
 
 
@@ -52,7 +52,7 @@ def write_scene(
 ) -> Path:
     """Write the scene of a machine as TOML, once it is known to be right, and its long tables beside it."""
     place = Path(path)
-    machine, more = _with_inputs(machine, more)
+    machine, more = with_inputs(machine, more)
     loads = split(machine)[1]
     scene(_data(machine, outputs, more, loads))
     tables = {name: load_table(name, load, place, machine.units) for name, load in loads.items()}
@@ -69,7 +69,7 @@ def write_scene(
     return place
 
 
-def _with_inputs(machine: Any, more: Mapping[str, Any]) -> tuple[Any, dict[str, Any]]:
+def with_inputs(machine: Any, more: Mapping[str, Any]) -> tuple[Any, dict[str, Any]]:
     """The machine with the inputs among further keys of its scene, and the other keys."""
     own = {name: value for name, value in more.items() if name in INPUTS and name != "theta"}
     rest = {name: value for name, value in more.items() if name not in own}

@@ -93,7 +93,9 @@ class Drive(Answer):
 
         def figure(name: str, angle: str | None = None) -> str:
             where = "" if angle is None or isnan(self[angle]) else f" at {self._angle(angle)}"
-            return "-" if isnan(self[name]) else f"{self[name]:.6g} {self.unit(name)}{where}"
+            scale = abs(self[f"{name.partition('_')[0]}_peak"]) if name.endswith("_mean") else 0.0
+            value = 0.0 if abs(self[name]) < ROUNDING * scale else self[name]
+            return "-" if isnan(value) else f"{value:.6g} {self.unit(name)}{where}"
 
         cycle = "a turn" if self.turns == 1 else f"in {self.turns} turns"
         speed = 60.0 * self.turns / _conversion(self._system, "period").to_si(self["period"])
@@ -113,9 +115,8 @@ class Drive(Answer):
         ]
 
     def _angle(self, name: str) -> str:
-        if self.unit(name) == "rad":
-            return f"{degrees(self[name]):.1f} deg"
-        return f"{self[name]:.6g} {self.unit(name)}"
+        angle = self[name] % (self.turns * self.whole_turn)
+        return f"{degrees(angle):.1f} deg" if self.unit(name) == "rad" else f"{angle:.6g} {self.unit(name)}"
 
     def __repr__(self) -> str:
         return self.report()
@@ -132,6 +133,7 @@ FIGURES = (
     "torque_mean", "torque_rms", "torque_peak", "theta_peak", "work_in", "work_out", "power_mean",
     "power_peak", "flywheel_inertia", "flywheel_torque", "starting_torque", "theta_start", "period",
 )  # fmt: skip
+ROUNDING = 1e-13  # of a peak: a mean below it is the rounding error of a sum that is 0
 COURSE = {"theta_of_speed": "rad", "speed": "rad/s"}
 
 

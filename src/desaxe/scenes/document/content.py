@@ -1,26 +1,30 @@
 """The whole document of a scene that was computed: which sections, in which order."""
 
+import platform
 import warnings
 from collections.abc import Mapping
+from dataclasses import replace
+from datetime import datetime
 from importlib import import_module
+from importlib.metadata import version
 from types import MappingProxyType
 from typing import NamedTuple
 
+from ...evaluation.labels import source
 from ...mechanism.quantity_units import UnitSystem
 from ...support.extras import needed
 from ..content import Content
-from ..report import checks_report, feasibility_report
 from ..run import Run
+from .blocks import Document, Lines, Section, Text, TextTable
 from .curves import curves, statuses
 from .drive import drive
 from .inputs import inputs, mechanism
-from .motor import motor
-from .origin import origin, warned
-from .parts import Document, Lines, Section
-from .peaks import peaks
+from .peaks import peaks_of_outputs
+from .results import in_units_shown, results
 from .spread import spread
 
 TITLE = "Offset slider-crank"
+PACKAGES = ("numpy", "numba")
 
 
 class DocumentContext(NamedTuple):
@@ -43,25 +47,31 @@ def document_of(content: Content, run: Run, units: UnitSystem, asked: DocumentCo
     """The document of a scene's results, in these units."""
     with warnings.catch_warnings(record=True) as heard:
         warnings.simplefilter("always")
+        run = replace(run, peaks=(*run.peaks, *peaks_of_outputs(content)))
+        shown = in_units_shown(content, run, units)
         sections = [
             inputs(content, units),
             mechanism(content, units),
-            _checked(run, units),
-            curves(content, run.dataset, units),
-            peaks(content, run.peaks, units),
+            *results(content, shown, units),
+            curves(content, shown, units),
             drive(content, units, asked.fluctuation),
-            motor(content, run.steady, units),
             spread(content, units, asked.tolerances),
         ]
     own = [str(one.message) for one in heard if one.category.__module__.startswith("desaxe.")]
     told = [*asked.warnings, *own, *statuses(run.dataset), *run.failures]
     known = [section for section in sections if section is not None]
-    return Document(content.title or TITLE, [*known, warned(told), origin(asked.command)])
+    return Document(content.title or TITLE, [*known, _warned(told), _origin(asked.command)])
 
 
-def _checked(run: Run, units: UnitSystem) -> Section | None:
-    """The printed values beside the computed ones, and the designs that cannot turn fully."""
-    told = [checks_report(run.checks)] if run.checks else []
-    found = run.feasibility
-    told += [feasibility_report(found, units)] if found and found.turning < found.designs else []
-    return Section("Checks", [Lines(text) for text in told]) if told else None
+def _warned(words: list[str]) -> Section:
+    """The warnings, and the points without a value."""
+    return Section("Warnings", [Text(one) for one in dict.fromkeys(words)] or [Text("none")])
+
+
+def _origin(command: str) -> Section:
+    """Versions, date and command."""
+    python = f"{platform.python_version()} ({platform.python_implementation()}, {platform.machine()})"
+    rows = [("desaxe", source().removeprefix("desaxe ")), ("Python", python)]
+    rows += [(name, version(name)) for name in PACKAGES]
+    rows.append(("made", f"{datetime.now().astimezone():%Y-%m-%d %H:%M %z}"))
+    return Section("Origin", [TextTable(("", "version"), rows), Text("Made by:"), Lines(command)])

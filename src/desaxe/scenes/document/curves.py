@@ -4,32 +4,46 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...design.steady.steady import steady
 from ...evaluation.in_units import in_units
 from ...mechanism.names import STATUSES
 from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import PointStatus
 from ...support.forks import IMPORTS
 from ..content import Content
+from ..parts.motor import MotorResult
 from ..parts.pictures import drawn
-from .parts import Block, Section, Text, TextTable, cell, image_of, thinned
+from ..run import Run
+from .blocks import Block, Section, Text, cell, image_of, thinned
 
 if TYPE_CHECKING:
     import xarray as xr
 
 PANELS, SAMPLES, CURVES = 3, 20_001, 6  # in a picture, along a curve, of a family
-ROWS = 24  # of a table
 ALWAYS = (*STATUSES, "margin")
 
 
-def curves(content: Content, dataset: "xr.Dataset | None", units: UnitSystem) -> Section | None:
+def curves(content: Content, run: Run, units: UnitSystem) -> Section | None:
     """The outputs over theta, or over the first axis, and the scene's own pictures; None without any."""
-    blocks: list[Block] = []
-    if dataset is not None:
-        blocks += _of_outputs(dataset if content.units else in_units(dataset, units))
+    blocks = [] if run.dataset is None else _of_outputs(run.dataset)
     for picture in content.pictures:
         axes = drawn(picture, content, units)
         blocks.append(image_of(axes.figure, picture.title or f"{picture.quantity} over {picture.over}"))
+    if run.steady is not None:
+        blocks += _on_motor(run.steady, content.branch, units)
     return Section("Curves", blocks) if blocks else None
+
+
+def _on_motor(result: MotorResult, branch: int, units: UnitSystem) -> list[Block]:
+    """The first design's speed and torque over a period."""
+    with IMPORTS:
+        from ...plot.steady import steady as draw
+
+    asked = result.asked
+    first: dict[str, Any] = {n: v[0] for n, v in asked.axes.items()}
+    one = steady(torque=asked.torque, branch=branch, **asked.fixed, **first)
+    words = "Speed and torque of the first design over a period, and its loop on the motor's curve"
+    return [] if one["status"] else [image_of(draw(in_units(one, units)).figure, words)]
 
 
 def statuses(dataset: "xr.Dataset | None") -> list[str]:
@@ -42,23 +56,17 @@ def statuses(dataset: "xr.Dataset | None") -> list[str]:
 
 
 def _of_outputs(dataset: "xr.Dataset") -> list[Block]:
-    names = [str(n) for n, a in dataset.data_vars.items() if n not in ALWAYS and a.dtype.kind == "f"]
-    one = {n: a for n in names if not (a := dataset[n]).ndim}
-    blocks: list[Block] = []
-    if one:
-        rows = [
-            (n, cell(float(a)), *(str(a.attrs.get(key, "")) for key in ("units", "long_name")))
-            for n, a in one.items()
-        ]
-        blocks.append(TextTable(("quantity", "value", "unit", "meaning"), rows))
+    """Pictures of the quantities that have the same axes, a few in each."""
     kinds: dict[tuple[str, ...], list[str]] = {}
-    for name in names:
-        if name not in one:
-            kinds.setdefault(tuple(map(str, dataset[name].dims)), []).append(name)
-    for dims, group in kinds.items():
-        for start in range(0, len(group), PANELS):
-            blocks += _picture(dataset, dims, group[start : start + PANELS])
-    return blocks
+    for name, array in dataset.data_vars.items():
+        if name not in ALWAYS and array.dtype.kind == "f" and array.ndim:
+            kinds.setdefault(tuple(map(str, array.dims)), []).append(str(name))
+    return [
+        block
+        for dims, group in kinds.items()
+        for start in range(0, len(group), PANELS)
+        for block in _picture(dataset, dims, group[start : start + PANELS])
+    ]
 
 
 def _picture(dataset: "xr.Dataset", dims: tuple[str, ...], names: list[str]) -> list[Block]:

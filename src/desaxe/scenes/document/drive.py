@@ -8,7 +8,8 @@ from ...mechanism.names import LOADS
 from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import DriveStatus
 from ..content import Content
-from .parts import Block, Section, Text, TextTable, designs_of, image_of
+from .blocks import Block, Section, Text, TextTable, image_of
+from .designs import designs_of
 
 
 def drive(content: Content, units: UnitSystem, fluctuation: float) -> Section | None:

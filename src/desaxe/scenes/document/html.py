@@ -5,7 +5,7 @@ from html import escape
 
 from ...support.template import file_text, filled
 from ...support.written import UNSEALED, sealed
-from .parts import Block, Document, Image, Lines, Text, TextTable
+from .blocks import Block, Document, Image, Lines, Text, TextTable
 
 
 def html(document: Document) -> str:
@@ -39,7 +39,7 @@ def _block(block: Block) -> str:
 
 
 def _table(table: TextTable) -> str:
-    head = "".join(f"<th>{escape(cell)}</th>" for cell in table.heads)
+    head = "".join(f"<th>{escape(head)}</th>" for head in table.columns)
     rows = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in table.rows]
     body = "\n".join(f"<tr>{row}</tr>" for row in rows)
     return f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>"

@@ -9,13 +9,16 @@ from ...design.feasibility.feasibility import feasibility
 from ...evaluation.evaluate import evaluate
 from ...loads.load import Load, OverY, TableOverTheta
 from ...loads.stroke import OverStroke
+from ...mechanism.closed import TURN
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
+from ...mechanism.own import used_by
 from ...mechanism.quantity_units import UnitSystem
 from ...support.forks import IMPORTS
 from ..content import Content
 from ..reading.values import Value
-from .parts import Block, Section, TextTable, cell, designs_of, image_of, in_unit, unit_of, with_unit
+from .blocks import Block, Section, TextTable, cell, image_of
+from .designs import designs_of, in_unit, unit_of, with_unit
 
 LISTED, POINTS = 6, 24  # values of a list, points of a load, that are all shown
 OF_TURN = {
@@ -24,6 +27,7 @@ OF_TURN = {
     "theta_inner": "inner dead centre",
     "max_pressure_angle": "largest pressure angle",
 }
+CENTRES = ("theta_outer", "theta_inner")
 ANGLE = pi / 3.0  # at which the mechanism is drawn
 
 
@@ -37,7 +41,8 @@ def inputs(content: Content, units: UnitSystem) -> Section:
     blocks: list[Block] = [TextTable(("input", "value", "unit", "meaning"), rows)]
     for name, value in content.inputs.items():
         blocks += _points(name, value, units)
-    own = [(one.name, one.expression, one.unit, one.meaning) for one in content.definitions]
+    names = (*content.outputs, *(peak.quantity for peak in content.peaks))
+    own = [(one.name, one.expression, one.unit, one.meaning) for one in used_by(names)]
     if own:
         blocks.append(TextTable(("quantity", "expression", "unit", "meaning"), own))
     return Section("Inputs", blocks)
@@ -120,5 +125,6 @@ def _geometry(lengths: dict[str, Any], branch: int, units: UnitSystem) -> dict[s
     }
     turn = events(branch=branch, **lengths)
     for name, words in OF_TURN.items():
-        told[words] = with_unit(units, name, turn[name])
+        value = turn[name] % TURN if name in CENTRES else turn[name]  # angles of a turn, as of peaks
+        told[words] = with_unit(units, name, value)
     return {**told, "time ratio": cell(turn["time_ratio"])}

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from html import escape
 
 from ...support.written import UNSEALED, sealed
+from .blocks import Block, Document, Image, Lines, Text
 from .html import source_of
-from .parts import Block, Document, Image, Lines, Text
 
 _SPECIAL = re.compile(r"([\\`*\[\]|#~]|(?<!\w)_|_(?!\w))")
 
@@ -32,7 +32,7 @@ def _block(block: Block, images: list[Image]) -> str:
         images.append(block)
         return f"![{_plain(block.words)}][picture-{len(images)}]"
     rule = ["---"] * len(block.heads)
-    return "\n".join([_row(block.heads), _row(rule, plain=True), *map(_row, block.rows)])
+    return "\n".join([_row(block.columns), _row(rule, plain=True), *map(_row, block.rows)])
 
 
 def _row(cells: Sequence[str], plain: bool = False) -> str:

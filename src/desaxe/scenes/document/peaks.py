@@ -1,106 +1,140 @@
-"""The section on peaks: value, angle, side of a jump, status and gradient of each design."""
+"""The sections on peaks: value, angle, side and slopes of each design, and the claims about them."""
 
 from collections.abc import Iterator
-from math import degrees, prod
+from math import degrees, isfinite, isnan, prod
 from typing import Any
 
 import numpy as np
 
 from ...evaluation.in_units import in_units
+from ...loads.load import OverY
 from ...mechanism.catalogue import quantity
+from ...mechanism.names import LENGTHS
 from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import PeakStatus
 from ...support.progress import Steps
-from ...support.shown import with_unit
+from ...support.shown import printed
 from ...sweeps.peak_step import WORDS
 from .. import schema
 from ..content import Content
-from ..parts.extremes import PeakResult, peaks_of
+from ..parts.extremes import SIDEWAYS, ClaimResult, PeakResult, peaks_of
 from ..reading.requested import peak_of
-from ..report import remarks, slope_text
 from ..schema import SceneError
-from .parts import MOST, Block, Section, Text, TextTable, axes_of, cell, thinned
+from .blocks import Block, Section, Text, TextTable, cell, thinned
+from .designs import axes_of, with_unit
 
 DESIGNS, ROWS = 1000, 24  # that are searched for peaks nobody named, that are listed
-SIDES = {-1: "-1, before it", 0: "0, no jump", 1: "+1, after it"}
+HUGE = 1e6  # percent: more is written as a power of ten
+SYMBOLS = {"absmax": "|{}|", "max": "max {}", "min": "min {}"}
+SIDE = "side: of a jump of a load, from which this is the limit: -1 smaller theta, +1 larger theta"
+MIRRORED = "+-: at ec = 0 the peak is at theta and at -theta; such a slope is + at one and - at the other"
 
 
-def peaks(content: Content, found: tuple[PeakResult, ...], units: UnitSystem) -> Section | None:
-    """The peaks of the scene, and those of its other outputs; None without any."""
-    blocks: list[Block] = []
-    for one in found:
-        dataset = one.dataset if content.units else in_units(one.dataset, units)
-        blocks += _blocks(one._replace(dataset=dataset), units)
-    for one in _others(content):
-        blocks += _blocks(one._replace(dataset=in_units(one.dataset, units)), units)
-    return Section("Peaks", blocks) if blocks else None
-
-
-def _others(content: Content) -> Iterator[PeakResult]:
+def peaks_of_outputs(content: Content) -> Iterator[PeakResult]:
     """The largest magnitudes of outputs that no [[peak]] is about."""
     if prod(len(values) for values in axes_of(content.inputs).values()) > DESIGNS:
         return
     for name in content.outputs:
         if not any(one.quantity == name for one in content.peaks):
             try:
-                wanted = peak_of("report", schema.PeakTable(quantity=name), content.inputs, content.units)
+                requested = peak_of("report", schema.PeakTable(quantity=name), content.inputs, content.units)
             except SceneError:  # a status, or a quantity of the whole design
                 continue
-            yield peaks_of(wanted, content, Steps(1, None))
+            result = peaks_of(requested, content, Steps(1, None))
+            yield result._replace(dataset=in_units(result.dataset, content.units))
 
 
-def _blocks(found: PeakResult, units: UnitSystem) -> list[Block]:
-    one, dataset = found.peak, found.dataset
+def peak(result: PeakResult, units: UnitSystem) -> Section:
+    """A row for each design, its slopes, and the claims; in the units of its dataset."""
+    one = result.peak
     known = quantity(one.quantity, "omega" in one.axes or "omega" in one.fixed)
-    title = one.title or f"{WORDS[one.kind].capitalize()} of {one.quantity}, {known.meaning}"
     low, high = (f"{degrees(angle):g}" for angle in one.theta)
-    places = list(np.ndindex(dataset["value"].shape))
-    blocks: list[Block] = [Text(f"{title} (theta from {low} to {high} deg)")]
-    blocks.append(_values(found, units, thinned(places, ROWS)))
-    slopes = [str(name) for name in dataset.data_vars if str(name).startswith("value_wrt_")]
-    if slopes:
-        few = thinned(places)
-        heads = ("derivative by", "unit", *(_called(found, place) or "this design" for place in few))
-        rows = [_slopes(found, dataset[name], few) for name in slopes]
-        blocks.append(TextTable(heads, rows))
-    told = [line.strip() for line in remarks(found)]
-    told += [f"Derivatives of {MOST} of {len(places)} designs are shown"] * (len(places) > MOST)
-    return [*blocks, *(Text(words) for words in told)]
+    title = one.title or f"{WORDS[one.kind].capitalize()} of {one.quantity}, {known.meaning}"
+    blocks: list[Block] = [_designs(result, units)]
+    if not one.axes:
+        blocks += _gradient(result)
+    blocks += map(Text, [*_remarks(result), *(_claim(result, claim, units) for claim in result.claims)])
+    return Section(f"{title} (theta from {low} to {high} deg)", blocks)
 
 
-def _slopes(found: PeakResult, slope: Any, places: list[Any]) -> list[str]:
-    """A derivative of the peaks of these designs."""
-    parameter, unit = str(slope.name).removeprefix("value_wrt_"), _unit(slope)
-    return [parameter, unit, *(slope_text(found, slope, place, cell) for place in places)]
-
-
-def _values(found: PeakResult, units: UnitSystem, places: list[Any]) -> TextTable:
-    one, dataset = found.peak, found.dataset
+def _designs(result: PeakResult, units: UnitSystem) -> TextTable:
+    """A row for each design; of several the slopes that are requested, too."""
+    one, dataset = result.peak, result.dataset
     angle = units.of("theta").unit
     scale = degrees(1.0) if angle == "rad" else 1.0
-    axes = [f"{name} [{_unit(dataset[name])}]" for name in one.axes]
-    heads = [*axes, f"value [{_unit(dataset['value'])}]"]
-    heads += [f"at theta [{'deg' if angle == 'rad' else angle}]", "side of a jump", "status"]
+    slopes = [dataset[n] for p in one.sensitivities if one.axes and (n := f"value_wrt_{p}") in dataset]
+    has_sides, is_based = bool(dataset["side"].values.any()), "increase" in dataset
+    heads = [*one.axes, SYMBOLS[one.kind].format(one.quantity), "at theta", *["side"] * has_sides]
+    heads += [f"over {_design(one.at_baseline, units)}"] * is_based
+    heads += [f"d/d({str(slope.name).removeprefix('value_wrt_')})" for slope in slopes]
+    units_of = [*(_unit(dataset[name]) for name in (*one.axes, "value")), "deg" if scale > 1.0 else angle]
+    units_of += [*[""] * (has_sides + is_based), *map(_unit, slopes)]
     rows = []
-    for place in places:
-        status = PeakStatus(int(dataset["status"].values[place]))
-        row = [cell(float(dataset[n].values[k])) for n, k in zip(one.axes, place, strict=True)]
-        row += [
-            cell(float(dataset["value"].values[place])),
-            cell(scale * float(dataset["theta"].values[place])),
-        ]
-        rows.append([*row, SIDES[int(dataset["side"].values[place])], f"{status:d} {status.words}"])
-    return TextTable([head.replace(" [1]", "") for head in heads], rows)
+    for index in thinned(list(np.ndindex(dataset["value"].shape)), ROWS):
+        row = [cell(dataset[name].values[k]) for name, k in zip(one.axes, index, strict=True)]
+        row += [cell(dataset["value"].values[index]), cell(scale * dataset["theta"].values[index])]
+        row += [f"{dataset['side'].values[index]:+d}".replace("+0", "0")] * has_sides
+        row += [_percent(float(dataset["increase"].values[index]))] if is_based else []
+        rows.append([*row, *(_slope(result, slope, index) for slope in slopes)])
+    return TextTable(heads, rows, units_of)
 
 
-def _called(found: PeakResult, place: tuple[int, ...]) -> str:
-    """A design by the inputs in which it differs from the others."""
-    dataset = found.dataset
-    return ", ".join(
-        with_unit(f"{n} = {cell(float(dataset[n].values[k]))}", dataset[n].attrs["units"])
-        for n, k in zip(found.peak.axes, place, strict=True)
-    )
+def _gradient(result: PeakResult) -> list[Block]:
+    """The whole gradient of one design, a row for each parameter."""
+    slopes = [array for name, array in result.dataset.data_vars.items() if str(name).startswith("value_wrt_")]
+    rows = [
+        (str(slope.name).removeprefix("value_wrt_"), _slope(result, slope, ()), _unit(slope))
+        for slope in slopes
+    ]
+    return [TextTable(("derivative by", "value", "unit"), rows)] if rows else []
+
+
+def _slope(result: PeakResult, slope: Any, index: tuple[int, ...]) -> str:
+    """A sensitivity; of either sign by what points to the side where two angles share the peak."""
+    value = float(slope.values[index])
+    sideways = str(slope.name).removeprefix("value_wrt_") in SIDEWAYS
+    return f"+-{cell(abs(value))}" if value and sideways and result.mirrored[index] else cell(value)
 
 
 def _unit(array: Any) -> str:
-    return str(array.attrs["units"]).replace("*", " ")
+    return printed(str(array.attrs["units"]))
+
+
+def _percent(value: float) -> str:
+    """A change in percent as short text: a dash for NaN, a power of ten if huge."""
+    form = "+.1f" if abs(value) < HUGE else "+.3g"
+    return "-" if isnan(value) else f"{value:{form}} %"
+
+
+def _remarks(result: PeakResult) -> list[str]:
+    """Footnotes on designs without an ordinary peak and on rows left out."""
+    one, status = result.peak, result.dataset["status"].values
+    counts = {code: int(np.sum(status == int(code))) for code in PeakStatus if code}
+    lines = [f"designs: {count} {code.words}" for code, count in counts.items() if count]
+    if result.mirrored.any() and any(name in SIDEWAYS for name in one.sensitivities):
+        lines.append(MIRRORED)
+    if result.dataset["side"].values.any():
+        lines.append(SIDE)
+    fixed = [n for n, load in one.loads.items() if isinstance(load, OverY) and not load.centre]
+    if fixed and any(name in LENGTHS for name in one.sensitivities):
+        named = " and ".join(fixed)
+        lines.append(f"d/d length: {named} over Y stays where it is, over_stroke moves with the stroke")
+    if status.size > ROWS:
+        lines.append(f"{ROWS} of {status.size} designs are shown")
+    return lines
+
+
+def _claim(result: PeakResult, checked: ClaimResult, units: UnitSystem) -> str:
+    claim = checked.claim
+    published = claim.increase.text(claim.increase.value)
+    where = f"{_design(claim.at, units)} over {_design(result.peak.at_baseline, units)}"
+    if not isfinite(checked.computed):
+        return f"increase of {where}: {claim.source} {published}, but there is no finite change: DIFFERS"
+    computed = claim.increase.text(claim.increase.rounded(checked.computed))
+    verdict = "agrees" if checked.agrees else "DIFFERS"
+    full = f" ({checked.computed:.2f} %)" if abs(checked.computed) < HUGE else ""
+    return f"increase of {where}: {claim.source} {published}, desaxe {computed}{full}: {verdict}"
+
+
+def _design(inputs: dict[str, float], units: UnitSystem) -> str:
+    return ", ".join(f"{n} = {with_unit(units, n, v) if v else 0}" for n, v in inputs.items())

@@ -14,8 +14,9 @@ from ...mechanism.status import ToleranceStatus
 from ...support.shown import shown
 from ...units.text import with_unit_of
 from ..content import Content
+from .blocks import NONE, Block, Section, Text, TextTable
 from .curves import ALWAYS
-from .parts import NONE, Block, Section, Text, TextTable, designs_of, in_unit, unit_of, with_unit
+from .designs import designs_of, in_unit, unit_of, with_unit
 
 SAMPLES = 1000  # of a Monte Carlo: its standard deviation is good to 2 %
 HEADS = ("quantity", "nominal", "unit", "standard deviation", "worst case", "driven by")

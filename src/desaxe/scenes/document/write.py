@@ -5,9 +5,9 @@ from pathlib import Path
 
 from ...support.shown import printable
 from ...support.written import require_path, write_whole
+from .blocks import Block, Document, Image, Section, Text
 from .html import html
 from .markdown import markdown
-from .parts import Block, Document, Image, Section, Text
 
 FORMS: dict[str, Callable[[Document], str]] = {".html": html, ".md": markdown}
 LARGEST, BUDGET = 2_000_000, 1_300_000  # bytes of all, and of pictures, of which text makes a third more

@@ -88,9 +88,10 @@ class RunPlan:
 
     def __str__(self) -> str:
         with IMPORTS:
-            from .plan_text import plan_text
+            from ..document.terminal import terminal
+            from .plan_text import plan_sections
 
-        return plan_text(self.data)
+        return terminal(self.data["title"] or "Scene", [*plan_sections(self.data)])
 
 
 @with_known_keywords
