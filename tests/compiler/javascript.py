@@ -3,6 +3,7 @@
 import json
 import math
 import subprocess
+from tempfile import NamedTemporaryFile
 
 from playwright._impl._driver import compute_driver_executable
 
@@ -20,8 +21,11 @@ console.log(JSON.stringify(cases.map((one) => point(...inputs.map((n) => number(
 def run_node(source, data):
     """Run a script by node with data as JSON on its input; return the JSON that it prints."""
     node = compute_driver_executable()[0]
-    command = [node, "-e", f'"use strict";\n{source}']
-    done = subprocess.run(command, input=json.dumps(data), capture_output=True, text=True, check=False)
+    with NamedTemporaryFile("w", suffix=".cjs", encoding="utf-8") as script:  # longer than an argument may be
+        script.write(f'"use strict";\n{source}')
+        script.flush()
+        command = [node, script.name]
+        done = subprocess.run(command, input=json.dumps(data), capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 

@@ -127,4 +127,6 @@ def test_gaps_and_kind_are_those_of_feasibility(lengths, standing):
         assert gaps == [[0.0, turn]]
     else:
         ends = sorted((a % turn, b % turn) for (_, a), (b, _) in zip(arcs, [*arcs[1:], arcs[0]], strict=True))
-        assert sorted((a % turn, b % turn) for a, b in gaps) == [pytest.approx(end, abs=1e-7) for end in ends]
+        assert sorted((a % turn, b % turn) for a, b in gaps) == [
+            pytest.approx(end, abs=1e-14) for end in ends
+        ]

@@ -8,12 +8,18 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ...compiler.languages.javascript import emit_javascript
+from ...compiler.program import Line, Program, renamed
 from ...loads.angles import cycle
+from ...loads.lines import line_of, totals_of
 from ...loads.load import Load, OverY, TableOverTheta
 from ...loads.resolve import plan_of, split
 from ...mechanism.catalogue import Quantity, law_name, quantities, quantity
+from ...mechanism.closed.dead_centres import DEAD_CENTRES
+from ...mechanism.closed.functions import closed_form
+from ...mechanism.closed.limits import ANGLES, LIMITS
 from ...mechanism.inputs import INPUTS
-from ...mechanism.names import CENTRES, LOADS, PARAMETERS, joined, parts
+from ...mechanism.load_lines import TurningSense, with_totals
+from ...mechanism.names import CENTRES, LENGTHS, LOADS, PARAMETERS, joined, parts
 from ...mechanism.own import Definition, used_by, using
 from ...mechanism.program import program_of
 from ...mechanism.quantity_units import SI, UnitSystem
@@ -45,8 +51,6 @@ class PageFunction(NamedTuple):
     names: tuple[str, ...]
     inputs: tuple[str, ...]
     source: str
-    # Of a total derivative: its place, that of the slope by a load, the load, the parameter that moves it.
-    terms: tuple[tuple[int, int, str, str], ...] = ()
 
 
 class PageContent(NamedTuple):
@@ -61,7 +65,6 @@ class PageContent(NamedTuple):
     left_out: Mapping[str, tuple[float, ...]]  # input -> its values that no design has
     given: tuple[str, ...]  # the inputs that were given
     loads: Mapping[str, TableOverTheta | OverY] = MappingProxyType({})
-    motion: PageFunction | None = None  # that loads over Y or the stroke follow
     units: UnitSystem = SI
     fields: UnitSystem = SI
     definitions: tuple[Definition, ...] = ()  # that the quantities use
@@ -95,13 +98,10 @@ def content(
         groups |= {} if names is not None else {name: [name] for name in VALUES if name not in groups}
         given = {**given, **{name: 0.0 for name in CHANGED if name not in given}}
     functions = tuple(_function(base, own, given, branch, loads) for base, own in groups.items())
-    motion = _motion(groups.values(), given, branch, loads)
     designs = _designs(given)
     left = {n: out for n, value in given.items() if n != "theta" and (out := _left_out(n, value, designs))}
     theta, own = _angles(given, cycle(loads)), used_by(groups)
-    return PageContent(
-        title, branch, theta, designs, shown, functions, left, named, loads, motion, definitions=own
-    )
+    return PageContent(title, branch, theta, designs, shown, functions, left, named, loads, definitions=own)
 
 
 def _tables(inputs: Mapping[str, Any]) -> dict[str, TableOverTheta | OverY]:
@@ -172,27 +172,40 @@ def _function(
     base: str, names: Iterable[str], given: Mapping[str, Value], branch: int, loads: Mapping[str, Load]
 ) -> PageFunction:
     plan = plan_of(tuple(names), loads, "omega" in given, "mu" in given)
-    asked = _request(plan.names, given, branch)
+    every = tuple(dict.fromkeys((*plan.names, *plan.motion)))
+    asked = _request(every, given, branch)
     program = specialise(asked.names, asked.form, asked.fixed)
-    terms = tuple(
-        (plan.names.index(name), plan.names.index(term.slope), term.force, term.parameter)
-        for name, group in plan.terms.items()
-        for term in group
-    )
-    return PageFunction(base, plan.shown, program.inputs, emit_javascript(program, f"of_{base}"), terms)
+    if plan.loads:
+        way = TurningSense("omega", "alpha") if "omega" in given else TurningSense("omega0")
+        lines = [line_of(*item) for item in plan.loads.items()]
+        outputs = dict(zip(every, program.outputs, strict=True))
+        program = _with_constants(with_totals(program, outputs, lines, totals_of(plan), way), plan.loads)
+    return PageFunction(base, plan.shown, program.inputs, emit_javascript(program, f"of_{base}"))
 
 
-def _motion(
-    groups: Iterable[Iterable[str]], given: Mapping[str, Value], branch: int, loads: Mapping[str, Load]
-) -> PageFunction | None:
-    """The motion that loads over Y or the stroke follow, with the derivatives that totals need."""
-    plans = [plan_of(tuple(names), loads, "omega" in given, "mu" in given) for names in groups]
-    names = tuple(dict.fromkeys(name for plan in plans for name in plan.motion))
-    if not names:
-        return None
-    asked = _request(names, given, branch)
-    program = specialise(asked.names, asked.form, asked.fixed)
-    return PageFunction("motion", names, program.inputs, emit_javascript(program, "of_motion"))
+def _with_constants(program: Program, forces: Iterable[str]) -> Program:
+    """The program whose loads have a constant added: an input of the force's name."""
+    sums = {f"{force}_sum": force for force in forces}
+    lines: list[Line] = []
+    for line in renamed(program, {force: name for name, force in sums.items()}).lines:
+        force = sums.get(line.name)
+        table = f"{force}_of_table"
+        pair = [line._replace(name=table), Line(line.name, "add", (table, force))] if force else [line]
+        lines += pair
+    return program._replace(inputs=(*program.inputs, *sums.values()), lines=tuple(lines))
+
+
+def closed_functions(branch: int) -> dict[str, str]:
+    """The functions of the lengths of a design, which are closed forms: limit angles, figures of a turn."""
+    turn = ("stroke", "time_ratio", "theta_outer", "theta_inner", "max_pressure_angle")
+    forms = {
+        "limits": closed_form(LIMITS, ANGLES).program,
+        "turn": closed_form(DEAD_CENTRES, turn, branch=float(branch), turning=1.0).program,
+    }
+    return {
+        name: emit_javascript(program._replace(inputs=LENGTHS), f"of_{name}")
+        for name, program in forms.items()
+    }
 
 
 def _request(names: tuple[str, ...], given: Mapping[str, Value], branch: int) -> Request:

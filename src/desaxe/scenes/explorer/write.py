@@ -6,7 +6,8 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from ...compiler.languages.javascript import HEADER
+from ...compiler.languages.javascript import HEADER, TABLES
+from ...compiler.languages.shared import arrays_of
 from ...definitions.tables import tables_of
 from ...loads.load import OverY, TableOverTheta
 from ...mechanism.inputs import INPUTS
@@ -17,7 +18,7 @@ from ...support.extras import needed
 from ...support.template import file_text, filled
 from ...support.written import UNSEALED, sealed, write_whole
 from ...units.system import DIMENSIONS
-from .content import PageContent, left_out_text
+from .content import PageContent, closed_functions, left_out_text
 
 # In the order in which they build on each other.
 SCRIPTS = ("numbers", "designs", "words", "mechanism", "charts", "controls", "files", "main")
@@ -54,11 +55,22 @@ def _asset(name: str) -> str:
 
 
 def _program(content: PageContent) -> str:
-    """The emitted functions, and a table of them."""
-    functions = [*content.functions, *([content.motion] if content.motion else [])]
-    table = [f"  {f.quantity}: of_{f.quantity}," for f in functions]
-    sources = _COMMENT.sub("", "\n".join(function.source for function in functions))
-    return "\n".join([HEADER, sources, "const FUNCTIONS = {", *table, "};"])
+    """The emitted functions with the tables that they look into, and a table of them."""
+    closed = closed_functions(content.branch)
+    sources = [*closed.values(), *(function.source for function in content.functions)]
+    names = [*closed, *(function.quantity for function in content.functions)]
+    arrays = arrays_of({name: load.arrays() for name, load in content.loads.items()})
+    return "\n".join(
+        [
+            HEADER,
+            *([TABLES] if arrays else []),
+            *(f"const {name} = {json.dumps([*column])};" for name, column in arrays.items()),
+            _COMMENT.sub("", "\n".join(sources)),
+            "const FUNCTIONS = {",
+            *(f"  {name}: of_{name}," for name in names),
+            "};",
+        ]
+    )
 
 
 def _data(content: PageContent) -> dict[str, Any]:
@@ -87,11 +99,8 @@ def _data(content: PageContent) -> dict[str, Any]:
         },
         "dimensions": {unit: name.replace(" ", "_") for name, unit in DIMENSIONS.items()},
         "parameters": {name: row.unit for name, row in INPUTS.items()},
-        "functions": {
-            f.quantity: {"names": f.names, "inputs": f.inputs, "terms": f.terms} for f in content.functions
-        },
+        "functions": {f.quantity: {"names": f.names, "inputs": f.inputs} for f in content.functions},
         "loads": {name: _load(load) for name, load in content.loads.items()},
-        "motion": content.motion and {"names": content.motion.names, "inputs": content.motion.inputs},
         "quantities": {row.name: _about(row.name, row.unit, row.meaning) for row in content.quantities},
         "definitions": tables_of(content.definitions),
         "status": {str(int(status)): status.words for status in PointStatus},
@@ -105,7 +114,7 @@ def _load(load: TableOverTheta | OverY) -> dict[str, Any]:
     else:
         inward = None if load.inward is None else load.inward.rows
         own = {"knots": load.outward.knots, "rows": load.outward.rows, "inward": inward}
-        own |= {"centre": load.centre, "rises": load.rises}
+        own |= {"centre": load.centre}
     return {**own, "over": load.over, "kind": load.kind}
 
 

@@ -17,10 +17,10 @@ from ...text import INDENT, WIDTH, with_short_temporaries, write_lines
 from ..lifted import Lifted, lifted
 from ..protocol import Module, Symbol
 from ..shared import arrays_of, numbers, one_line
-from .module import IMPORTS, NJIT, SOURCES, numba_parts
+from .module import IMPORTS, NJIT, SOURCES, SPELLINGS, numba_parts
 
 HELPER_FILE = "_helpers"
-FRONT, SPELLINGS = SOURCES / "front.py", SOURCES / "spellings.py"
+FRONT = SOURCES / "front.py"
 _TURNED = ("rotated_sin", "rotated_cos")  # there, but no functions
 TEST = "has_wide_margins"
 INLINED = '@njit(error_model="numpy", forceinline=True)\n'

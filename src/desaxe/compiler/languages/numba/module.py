@@ -13,7 +13,7 @@ from ...builder import HELPERS, MATH, Parts, with_sources
 
 NJIT = '@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)\n'
 SOURCES = Path(__file__).with_name("sources")
-FILES = tuple(SOURCES / f"{name}.py" for name in ("spellings", "rooms", "given"))
+SPELLINGS = SOURCES / "spellings.py"
 # Where the names come from that stand in the text of Programs and loops.
 IMPORTS = MATH | {
     "empty": "numpy", "float64": "numpy", "floor": "numpy",  # math.floor gives an integer: no vectors
@@ -23,4 +23,4 @@ IMPORTS = MATH | {
 
 def numba_parts(parts: Sequence[str], *files: Path, jit: str = NJIT) -> Parts:
     """Parts of a module behind all that they call, of these files and of this language's own."""
-    return with_sources(parts, (*files, *FILES, HELPERS), jit, IMPORTS)
+    return with_sources(parts, (*files, SPELLINGS, HELPERS), jit, IMPORTS)

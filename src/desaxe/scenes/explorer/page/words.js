@@ -43,7 +43,7 @@ function stallWords(design) {
 function statusWords(design, theta) {
   const status = statusAt(design, theta);
   if (status !== 1) return status ? CONTENT.status[status] : "";
-  if (linkageAt(design, theta) !== 1) return "forces have no value: this design lacks the dead centre from which a load is measured";
+  if (Number.isFinite(valueAt("Y", design, theta))) return "forces have no value: this design lacks the dead centre from which a load is measured";
   const reach = Math.abs(design.ec + design.AB * Math.sin(theta));
   return (
     `cannot be assembled: the crank pin is ${shownInput("BC", reach)} from the slider axis, ` +

@@ -2,6 +2,4 @@
 
 front       loops and functions of arrays of modules that people import
 spellings   functions that numba spells in its own way
-rooms       buffers of numbers
-given       a function of the user's behind an address
 """
