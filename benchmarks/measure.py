@@ -63,8 +63,8 @@ def measure(works: Sequence[Work], effort: Effort, watch: Progress | None = None
         "points": {work.key: effort.count(work) for work in works},
     }
     with tempfile.TemporaryDirectory() as folder:
-        before = os.environ.get("DESAXE_CACHE_DIR")
-        os.environ["DESAXE_CACHE_DIR"] = folder  # of the children: what compilation takes is measured
+        before = os.environ.get("NUMBA_CACHE_DIR")
+        os.environ["NUMBA_CACHE_DIR"] = folder  # of the children: what compilation takes is measured
         steps.next("processes")
         with racers([*here, MACHINE], cores[-1:]) as who:
             data["one core"] = {}
@@ -94,9 +94,9 @@ def measure(works: Sequence[Work], effort: Effort, watch: Progress | None = None
                 for work in several:
                     steps.next(f"{work.title}, on {len(cores)} cores")
                     data["all cores"][work.key] = _plain(race(who, work, effort.count(work), effort.rounds))
-        del os.environ["DESAXE_CACHE_DIR"]
+        del os.environ["NUMBA_CACHE_DIR"]
         if before is not None:
-            os.environ["DESAXE_CACHE_DIR"] = before
+            os.environ["NUMBA_CACHE_DIR"] = before
     if whole and not effort.quick:
         steps.next("new processes")
         data["starts"] = starts(here, cores[-1], 2)

@@ -18,7 +18,7 @@ from .work import BY_KEY
 
 POINTS = 10_000
 WORK = BY_KEY["point"]
-CACHES = ("DESAXE_CACHE_DIR", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR")
+CACHES = ("XDG_CACHE_HOME", "NUMBA_CACHE_DIR")
 
 
 def starts(contenders: Sequence[Contender], core: int, rounds: int) -> dict[str, dict[str, float]]:

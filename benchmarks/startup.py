@@ -54,7 +54,7 @@ CALLS = {
 
 def seconds(call: str, cache: str) -> float:
     """Processor time of a call in a new process."""
-    environment = {**os.environ, "DESAXE_CACHE_DIR": cache}
+    environment = {**os.environ, "NUMBA_CACHE_DIR": cache}
     code = f"{BEFORE}{call}{AFTER}"
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=False

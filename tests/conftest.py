@@ -1,7 +1,6 @@
 """Options and fixtures of all tests.
 
-Compiled kernels of a test run live in a folder of their own, shared by its workers, gone at its end without
-`--kernels`.
+The workers of a run share a folder, $DESAXE_TESTS_FOLDER, which is gone at its end.
 
 By default random tests draw few cases and tests marked `thorough` are left out; `--thorough` runs just
 those two kinds, with many cases: `.ci/run` does both. Files, and the tests of each, run as they stand;
@@ -15,25 +14,21 @@ import shutil
 import sys
 import tempfile
 from functools import cache
-from pathlib import Path
 
 import pytest
 
 from desaxe.mechanism import own
-from desaxe.runtime import cache as _cache
 from desaxe.runtime import executor
 from desaxe.support.recent import Recent
 from tests.effort import VARIABLE as THOROUGH
 
-VARIABLE = "DESAXE_CACHE_DIR"
+VARIABLE = "DESAXE_TESTS_FOLDER"
 
 
 def pytest_addoption(parser):
     parser.addoption("--thorough", action="store_true", help="run tests marked thorough or sampled, in full")
     text = "draw the order of files, and of the tests in each; SEED is a number, or `any`, which is printed"
     parser.addoption("--shuffle", metavar="SEED", help=text)
-    text = "keep compiled kernels in this folder, for another run of the same tree"
-    parser.addoption("--kernels", metavar="FOLDER", help=text)
 
 
 def pytest_configure(config):
@@ -42,21 +37,17 @@ def pytest_configure(config):
         config.option.loadscopereorder = False  # xdist's own order: the largest file first
     if config.getoption("--thorough"):
         os.environ.setdefault(THOROUGH, "1")
-    _cache.WAIT = 120.0  # a loaded machine compiles slowly for another worker, and a warning is an error here
     if hasattr(config, "workerinput"):
         return
     # Hundreds of processes import the same sources.
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     sys.dont_write_bytecode = False
-    if config.getoption("--kernels"):
-        os.environ[VARIABLE] = str(Path(config.getoption("--kernels")).absolute())
-    else:
-        config.kernel_folder = os.environ[VARIABLE] = tempfile.mkdtemp(prefix="desaxe-tests-")
+    config.shared_folder = os.environ[VARIABLE] = tempfile.mkdtemp(prefix="desaxe-tests-")
 
 
 def pytest_unconfigure(config):
-    if hasattr(config, "kernel_folder"):
-        shutil.rmtree(config.kernel_folder, ignore_errors=True)
+    if hasattr(config, "shared_folder"):
+        shutil.rmtree(config.shared_folder, ignore_errors=True)
 
 
 def _seed(config):
@@ -145,8 +136,6 @@ def nothing_left_behind():
 
 
 @pytest.fixture
-def cold(monkeypatch, tmp_path_factory):
-    """A process that has no kernel, in memory or on disk, whatever other tests compiled."""
-    empty = _cache.Folder(tmp_path_factory.mktemp("cold"), lasting=True)
-    monkeypatch.setattr(_cache, "folder", lambda: empty)
+def cold(monkeypatch):
+    """A process that has no kernel, whatever other tests compiled."""
     monkeypatch.setattr(executor, "_KEPT", Recent(executor.MOST_KEPT))

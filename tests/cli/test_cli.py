@@ -12,7 +12,7 @@ import pytest
 
 import desaxe as dx
 from benchmarks.accuracy import freeze
-from desaxe.cli import accuracy, cache, command, doctor, main
+from desaxe.cli import accuracy, command, doctor, main
 from desaxe.mechanism.inputs import INPUTS
 
 COMPACTOR = str(Path(__file__).parents[2] / "examples" / "compactor.toml")
@@ -405,12 +405,3 @@ def test_doctor_compares_with_the_truth(monkeypatch):
 
 def test_frozen_truths_are_fresh():
     assert freeze.TABLE.read_text(encoding="utf-8") == freeze.text(), freeze.__doc__
-
-
-def test_the_cache_is_listed_without_its_locks(tmp_path, capsys):
-    for ending in ("code", "lock"):
-        (tmp_path / f"kernel_{'0' * 40}.{ending}").touch()
-    cache._list(tmp_path)
-    text = capsys.readouterr().out
-    assert ".lock" not in text
-    assert "1 files, " in text

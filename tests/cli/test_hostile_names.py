@@ -61,7 +61,6 @@ derive --quantities {} {}
 evaluate {}
 evaluate a_C theta={}
 run {} {}
-cache {}
 {}
 run --{}
 doctor {}

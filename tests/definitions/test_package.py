@@ -120,7 +120,6 @@ def test_an_edited_file_is_replaced_with_overwrite_alone(tmp_path, capsys, monke
     (tmp_path / "mine.toml").write_text(TEXT, encoding="utf-8")
     order = ["--quantities", str(tmp_path / "mine.toml"), "-o", str(tmp_path / "own")]
     assert derive(order) == 0
-    monkeypatch.setattr("desaxe.runtime.cache.folder", lambda: type("", (), {"path": tmp_path / "empty"}))
     place = tmp_path / "own" / "arm_0_law.py"
     first = place.read_bytes()
     place.write_bytes(first.replace(b"0.001", b"0.002"))

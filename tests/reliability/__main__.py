@@ -1,7 +1,6 @@
 """`python -m tests.reliability`: every kind of trial, as often as it takes; writes docs/reliability.md."""
 
 import argparse
-import os
 import platform
 import tempfile
 import time
@@ -32,7 +31,6 @@ def main() -> int:
     parser.add_argument("--only", default="", help="kinds with this word in their name")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="desaxe-reliability-") as room:
-        os.environ["DESAXE_CACHE_DIR"] = f"{room}/cache"
         from tests.reliability.trials import TRIALS
 
         rows = []

@@ -80,7 +80,7 @@ LATEST = 4.0  # seconds after its start
 
 
 def fork_in_first_calls(folder: Path, random: Random) -> Verdict:
-    """Forks at random moments of a first call, into an empty cache: each child ends, with values."""
+    """Forks at random moments of a first call: each child ends, with values."""
     first, again = random.choice(list(FIRST_CALLS)), random.choice(list(FIRST_CALLS))
     moments = sorted(random.uniform(0.0, LATEST) for _ in range(MOMENTS))
     program = START + PROGRAM.format(
@@ -90,7 +90,7 @@ def fork_in_first_calls(folder: Path, random: Random) -> Verdict:
         seconds=SECONDS,
         by_thread=random.random() < 0.5,
     )
-    code, out, error = run(program, folder, SECONDS + 120.0)
+    code, out, error = run(program, SECONDS + 120.0)
     told = f"{first}, then {again} after {', '.join(f'{moment:.3f}' for moment in moments)} s"
     if code is None or "hung" in out:
         return Verdict(HUNG, f"{told}: {out}")

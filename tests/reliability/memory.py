@@ -68,7 +68,7 @@ COUNT = 20_000
 def mixed_calls(folder: Path, random: Random) -> Verdict:
     """Memory after a quarter of the calls, and after all of them."""
     program = PROGRAM.format(seed=random.randrange(10**6), count=COUNT)
-    code, out, error = run(program, folder / "cache", 900.0)
+    code, out, error = run(program, 900.0)
     if code is None:
         return Verdict(HUNG)
     if code:

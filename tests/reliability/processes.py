@@ -1,11 +1,10 @@
-"""Trials of processes: forks after threads were used, interrupts at any moment, locks that are held."""
+"""Trials of processes: forks after threads were used, interrupts at any moment."""
 
 import os
 import signal
 import subprocess
 import sys
 import time
-from functools import cache
 from pathlib import Path
 from random import Random
 
@@ -20,10 +19,6 @@ theta = np.linspace(0.0, 6.0, 200_000)
 
 def value():
     return float(dx.evaluate("a_C", theta=theta, threads=2, **design).sum())
-
-def motions():  # whose machine code is kept in the cache folder
-    machine = dict(AB=0.125, BC=0.35, I_crank=0.01, m_slider=1.0)
-    return dx.simulate(torque=1.0, t_end=1.0, times=[1.0], ec=np.linspace(0.0, 0.1, 64), **machine)
 """
 FORKS = {
     "os.fork": """
@@ -76,9 +71,9 @@ code = os.waitstatus_to_exitcode(os.waitpid(number, 0)[1])
 }
 
 
-def run(program: str, cache_folder: Path, seconds: float, **environment: str) -> tuple[int | None, str, str]:
+def run(program: str, seconds: float, **environment: str) -> tuple[int | None, str, str]:
     """A program in a process of its own: exit code, None where it had to be killed, and what it printed."""
-    own = {**os.environ, "DESAXE_CACHE_DIR": str(cache_folder), **environment}
+    own = {**os.environ, **environment}
     process = subprocess.Popen(
         [sys.executable, "-c", program], env=own, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )
@@ -91,18 +86,10 @@ def run(program: str, cache_folder: Path, seconds: float, **environment: str) ->
     return process.returncode, out, error
 
 
-@cache
-def warm() -> Path:
-    """A cache folder that has the machine code of `motions`."""
-    folder = Path(os.environ["DESAXE_CACHE_DIR"]) / "reliability"
-    run(START + "motions()", folder, 120.0)
-    return folder
-
-
 def fork_after_threads(folder: Path, random: Random) -> Verdict:
     way = random.choice(list(FORKS))
     program = FORKS[way].replace("MOMENT", f"{random.uniform(0.0, 1.0)}")
-    code, _, error = run(f"{START}\nfirst = value()\n{program}\nsys.exit(code)", folder, 60.0)
+    code, _, error = run(f"{START}\nfirst = value()\n{program}\nsys.exit(code)", 60.0)
     if code is None:
         return Verdict(HUNG, way)
     return GOOD if code == 0 else Verdict(WRONG if code == 3 else CRASHED, f"{way}: {code} {error[-300:]}")
@@ -145,10 +132,8 @@ def interrupted(folder: Path, random: Random) -> Verdict:
     """SIGINT at some moment: the call stops within a second, and the next one is right."""
     name = random.choice(list(WORKS))
     program = f"{START}\nfirst = value()\n{INTERRUPTED.format(work=WORKS[name])}"
-    place = folder if name == "compile" else warm()  # in an empty folder it compiles
-    own = {**os.environ, "DESAXE_CACHE_DIR": str(place)}
     process = subprocess.Popen(
-        [sys.executable, "-c", program], env=own, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        [sys.executable, "-c", program], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )
     assert process.stdout is not None
     process.stdout.readline()
@@ -184,33 +169,7 @@ def spent(number: int) -> float:
         return time.monotonic()
 
 
-def a_lock_for_ever(folder: Path, random: Random) -> Verdict:
-    """Another process holds the lock of a kernel: a warning after some seconds, then work without it."""
-    program = f"""{START}
-import fcntl
-from desaxe.runtime import cache
-from desaxe.runtime.native import modules
-cache.WAIT = 1.0
-path_of = modules.path_of
-def held(kind, text):
-    path = path_of(kind, text)
-    global keeper
-    keeper = os.open(path.with_suffix(".lock"), os.O_RDWR | os.O_CREAT)
-    fcntl.flock(keeper, fcntl.LOCK_EX)
-    return path
-modules.path_of = held
-import warnings
-with warnings.catch_warnings(record=True) as told:
-    warnings.simplefilter("always")
-    motions()
-assert any("another process has held" in str(one.message) for one in told), told
-"""
-    code, _, error = run(program, folder, 60.0)
-    return Verdict(HUNG) if code is None else GOOD if code == 0 else Verdict(WRONG, error[-300:])
-
-
 TRIALS = [
     Trial("fork after a threaded call", fork_after_threads, 1, 30),
     Trial("SIGINT at any moment, then the next call", interrupted, 0, 30),
-    Trial("a lock that is held for ever", a_lock_for_ever, 0, 3),
 ]

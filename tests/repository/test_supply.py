@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 # Every place that runs a text as code; what it runs was written by our compiler from its own Program.
 RUNS_TEXT = {
     "src/desaxe/runtime/kernels.py",
-    "src/desaxe/runtime/native/compiled_text.py",
+    "src/desaxe/simulation/loops/torque.py",
     "src/desaxe/runtime/native_calls.py",
     "src/desaxe/compiler/languages/arrays.py",
     "src/desaxe/compiler/languages/python.py",

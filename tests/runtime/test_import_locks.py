@@ -90,9 +90,8 @@ sys.meta_path.insert(0, Spy())
 
 
 @pytest.mark.thorough
-def test_first_calls_import_nothing_without_the_lock(tmp_path, monkeypatch):
+def test_first_calls_import_nothing_without_the_lock():
     """What libraries import inside their functions is seen, too."""
-    monkeypatch.setenv("DESAXE_CACHE_DIR", str(tmp_path))
     program = "\n".join([START, SPY, *FIRST_CALLS.values()])
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert not done.stdout

@@ -1,14 +1,12 @@
 """Arrays: threads, far angles, states; the cache folder."""
 
 import math
-import tempfile
 
 import numpy as np
 import pytest
 import xarray
 
 import desaxe as dx
-from desaxe.runtime import cache as _cache
 from tests.ways import POINT, SIZES, close, columns
 
 # ---- threads, far angles, a state -----------------------------------------------------
@@ -88,19 +86,3 @@ def test_a_state_has_none_by_omega0():
 
 def test_a_state_never_stalls():
     assert dx.evaluate("status", **STATE | {"theta": 100.0, "alpha": -1e9}) == 0
-
-
-# ---- the cache folder of what numba compiles ------------------------------------------------------------
-
-
-def test_a_folder_without_permission_is_a_warning(tmp_path, monkeypatch):
-    def refused(**_):
-        raise PermissionError("read-only")
-
-    monkeypatch.setenv("DESAXE_CACHE_DIR", str(tmp_path / "cache"))
-    monkeypatch.setattr(tempfile, "TemporaryFile", refused)
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    with pytest.warns(RuntimeWarning, match="no cache folder can be written"):
-        found = _cache.folder.__wrapped__()
-    assert found.path.parent == tmp_path
-    assert not found.lasting

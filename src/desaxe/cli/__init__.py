@@ -8,7 +8,6 @@ answers  the answer of a call on the terminal, as JSON or CSV, in a file
 scene    `desaxe run`, `scene`, `explain`, `compile`, `explore`
 sweep    `desaxe sweep`
 checks   `desaxe derive`, `doctor`
-cache    `desaxe cache`: the folder of compiled kernels
 doctor   the report of `desaxe doctor`
 accuracy values beside frozen truths: `desaxe doctor --accuracy`
 """

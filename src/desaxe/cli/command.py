@@ -17,7 +17,6 @@ from typing import Any
 from ..support.extras import MissingExtraError, explained
 from ..support.interrupts import is_at_work
 from ..support.shown import printable
-from .cache import add_cache
 from .calls import CALLS, add_calls
 from .checks import add_derive, add_doctor, derive
 from .parser import SIGNS, Parser, Version
@@ -42,7 +41,6 @@ COMMANDS = (
     add_compile,
     add_explore,
     add_derive,
-    add_cache,
     add_doctor,
 )
 

@@ -35,7 +35,6 @@ def examine(accuracy: bool = False) -> Examination:
         "desaxe": [_row("version", _version("desaxe")), _row("place", str(Path(__file__).parents[1]))],
         "runtime": [_row("python", _python()), *(_row(name, _version(name)) for name in RUNTIME)],
         "optional": [_row(name, _optional(name)) for name in OPTIONAL],
-        "kernels on disk": _cache(),
         "committed kernels": [_committed()],
         "arrays": [_row("machine code", _machine_code())],
         "processor": _processor(),
@@ -73,22 +72,7 @@ def _python() -> str:
     return f"{platform.python_version()} ({kind})"
 
 
-# ---- where kernels are ---------------------------------------------------------------------------
-
-
-def _cache() -> list[str]:
-    """The cache folder of peaks and simulation: its path, its persistence, its contents."""
-    from ..runtime.cache import VARIABLE, entries, folder, limit
-
-    found = folder()
-    kept = entries(found.path)
-    size = sum(entry.size for entry in kept)
-    count = sum(entry.path.suffix == ".code" for entry in kept)
-    state = "can be written" if found.lasting else f"temporary: {found.why} (set {VARIABLE})"
-    return [
-        _row("folder", f"{found.path} ({state})"),
-        _row("holds", f"{count} kernels, {size / 1e6:.1f} MB of at most {limit() / 1e6:.0f} MB"),
-    ]
+# ---- machine code and generated files -------------------------------------------------------------
 
 
 def _machine_code() -> str:

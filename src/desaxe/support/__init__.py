@@ -9,7 +9,6 @@ roots          one root of a function
 panels         functions as polynomials on panels: integrals, roots, extremes
 progress       how far long work is, and a bar on the terminal
 version        the version of this installation
-private        files and folders that only this user can have written
 forks          locks and threads that a forked process must not inherit
 signals        what handlers of signals raise, put off until a block is done
 interrupts     long work that Ctrl-C must not cut in half

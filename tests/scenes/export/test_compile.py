@@ -92,7 +92,7 @@ def points_of(scene):
 @pytest.fixture(scope="module")
 def alone():
     """The results of every module in a process without desaxe, shared by the workers of a test run."""
-    folder = Path(os.environ["DESAXE_CACHE_DIR"]) / "modules"
+    folder = Path(os.environ["DESAXE_TESTS_FOLDER"]) / "modules"
     folder.mkdir(exist_ok=True)
     kept = folder / "found"
     with locked(kept.with_suffix(".lock"), 600.0, "another worker makes the modules"):
