@@ -298,6 +298,13 @@ def _first_panels(edges: Array, widest: float) -> tuple[Array, Array, Array]:
     return design, low + number * step, np.where(number + 1 < parts, low + (number + 1) * step, high)
 
 
+def divided(edges: Array, widest: float) -> Array:
+    """Edges in rows, in any order, NaN in empty places, and others between them: no gap is wider."""
+    design, start, _ = _first_panels(edges, widest)
+    rows = padded(design, start, len(edges), np.nanmin(edges, axis=1))
+    return np.concatenate([np.sort(rows, axis=1), np.nanmax(edges, axis=1, keepdims=True)], axis=1)
+
+
 def _in_rows(
     size: int, design: Array, start: Array, stop: Array, values: dict[str, Array], one: bool
 ) -> Panels:

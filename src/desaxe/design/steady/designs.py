@@ -21,7 +21,8 @@ from ...loads.angles import meeting_angles
 from ...loads.load import Load
 from ...mechanism.closed.angles import dead_centres
 from ...mechanism.names import LENGTHS
-from ...support.panels import padded
+from ...support.panels import divided
+from ..turn.cycle import Cycle
 from .source import TorqueSource
 
 Array = NDArray[Any]
@@ -95,6 +96,11 @@ class DesignRows(NamedTuple):
         found = evaluate(list(names), theta=self.theta(x), branch=self.branch, **present)
         return {name: np.broadcast_to(found[name], x.shape) for name in names}
 
+    @property
+    def cycle(self) -> Cycle:
+        """The designs over their period, in the way of a crank that turns forwards."""
+        return Cycle(self.numbers, self.loads, self.branch, self.turns)
+
     def lengths(self) -> list[Array]:
         """ec, AB and BC of each design."""
         return [np.broadcast_to(np.asarray(self.numbers[n], float), (self.size,)) for n in LENGTHS]
@@ -113,17 +119,7 @@ class DesignRows(NamedTuple):
         if self.has_friction:
             own = dead_centres(self.lengths()) * self.way[:, None]
             found += [(own + 2.0 * pi * k) % period for k in range(self.turns)]
-        every = np.concatenate(found, axis=1)
-        every = np.sort(np.where(np.isnan(every), 0.0, every), axis=1)
-        gaps = np.diff(every, axis=1)
-        pieces = np.ceil(gaps / WIDEST).astype(int)
-        row, gap = np.nonzero(pieces)
-        many = pieces[row, gap]
-        first = np.repeat(np.cumsum(many) - many, many)
-        row, gap, many = (np.repeat(each, many) for each in (row, gap, many))
-        start = every[row, gap] + (np.arange(len(row)) - first) * (gaps[row, gap] / many)
-        starts = np.sort(padded(row, start, self.size, every[:, 0]), axis=1)
-        return np.concatenate([starts, every[:, -1:]], axis=1)
+        return divided(np.concatenate(found, axis=1), WIDEST)
 
 
 def vanishing(designs: DesignRows) -> Array:

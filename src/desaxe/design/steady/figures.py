@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...support.panels import WEIGHT
+from ..turn.cycle import NEAR
 from .orbit import Orbit
-from .slopes import NEAR, OrbitSlopes
+from .slopes import OrbitSlopes
 
 Array = NDArray[Any]
 KEYS = ("period", "omega_mean", "fluctuation", "power_mean")  # that have derivatives

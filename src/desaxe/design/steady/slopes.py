@@ -15,8 +15,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...loads.load import OverY
-from ...mechanism.names import LENGTHS
 from ...runtime.request import request
 from ...support.computed import computed_once
 from .designs import DesignRows
@@ -27,8 +25,6 @@ Array = NDArray[Any]
 REFINED = 2  # times that a solution is corrected by what it leaves
 EXACT = 1e-8  # of a solution: a correction after which another one is below rounding
 JUMP = 1e-9  # of the largest z': less is none
-NEAR = 1e-9  # rad: an edge is where a load has a kink
-FLAT = 1e-6  # of the crank: Y_wrt_theta at a dead centre
 
 
 def parameters(designs: DesignRows) -> tuple[str, ...]:
@@ -92,30 +88,7 @@ class OrbitSlopes:
         return {name: jump * shift for name, shift in self.shifts(mesh.edges[:, 1:]).items()}
 
     def shifts(self, x: Array) -> dict[str, Array]:
-        """By how much each length moves places where a load over the slider has a kink; 0 elsewhere."""
-        found: dict[str, Array] = {}
-        for load in self.designs.loads.values():
-            if isinstance(load, OverY):
-                for name, shift in moves(self.designs, load, x).items():
-                    found[name] = found.get(name, 0.0) + self.orbit.course.way[..., 0] * shift
-        return found
-
-
-def moves(designs: DesignRows, load: OverY, x: Array) -> dict[str, Array]:
-    """By how much each length moves the angles at which a load over the slider has a kink; 0 elsewhere."""
-    places = designs.kinks(load)
-    gap = np.abs(x[..., None] - places[:, None, :])
-    own = (np.minimum(gap, designs.period - gap) < NEAR).any(-1)
-    bends = [f"Y_wrt_theta_{name}" for name in ("theta", *LENGTHS)]
-    alone = designs._replace(loads={}, numbers={n: designs.numbers[n] for n in LENGTHS})
-    names = tuple(dict.fromkeys((*load.motion(("theta", *LENGTHS)), *bends)))
-    found = alone.values(names, x, omega=1.0, alpha=0.0)
-    along = load.moved("theta", found)
-    flat = np.abs(found["Y_wrt_theta"]) <= FLAT * designs.each(designs.numbers["AB"], 2)
-    result = {}
-    for name in LENGTHS:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            here = -load.moved(name, found) / along
-            there = -found[f"Y_wrt_theta_{name}"] / found["Y_wrt_theta_theta"]
-        result[name] = np.where(own, np.where(flat, there, here), 0.0)
-    return result
+        """By how much each length moves places where a load over the slider jumps; 0 elsewhere."""
+        way = self.orbit.course.way[..., 0]
+        moves = self.designs.cycle.moves([], self.designs.theta(x))
+        return {name: way * shift for name, shift in moves.items()}

@@ -1,7 +1,7 @@
 """A torque of any kind over angle and speed, for rows of designs: value, slope, and derivatives."""
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -28,93 +28,60 @@ EXPECTED = (
 )
 
 
-class TorqueSource(ABC):
+@dataclass(frozen=True)
+class TorqueSource:
     """The torque of a call.
 
-    numbers   its parameters, by which there are derivatives
+    both      from angle, speed and parameters to the torque and its derivative by the speed
+    numbers   its parameters, by which there are derivatives: `by` returns them
+    speeds    among which turns are tried
     knots     speeds at which it has a kink
     varies    whether it depends on the speed, of_speed_alone: on nothing else
     way       the way in which it turns the crank, None where it has none of its own
     """
 
-    numbers: Mapping[str, Any] = {}
+    both: Callable[[Array, Array, Mapping[str, Any]], tuple[Array, Array]]
+    numbers: Mapping[str, Any] = field(default_factory=dict)
+    by: Callable[[Array, Mapping[str, Any]], dict[str, Array]] = lambda omega, row: {}
+    speeds: Callable[[Mapping[str, Any]], Array] = lambda row: np.ravel(SPEEDS)
     knots: tuple[float, ...] = ()
-    varies = True
-    of_speed_alone = True
+    varies: bool = True
+    of_speed_alone: bool = True
     load: Load | None = None
     way: Any = None
 
-    @abstractmethod
-    def both(self, theta: Array, omega: Array, row: Mapping[str, Any]) -> tuple[Array, Array]:
-        """The torque and its derivative by the speed."""
 
-    def by(self, omega: Array, row: Mapping[str, Any]) -> dict[str, Array]:
-        """The derivatives by the parameters."""
-        return {}
-
-    def speeds(self, row: Mapping[str, Any]) -> Array:
-        """Speeds among which turns are tried."""
-        return np.ravel(SPEEDS)
-
-
-class ConstantTorque(TorqueSource):
+def _constant(value: Any) -> TorqueSource:
     """A number, or one for each design."""
-
-    varies = False
-
-    def __init__(self, value: Any) -> None:
-        self.numbers = {"torque": value}
-
-    def both(self, theta: Array, omega: Array, row: Mapping[str, Any]) -> tuple[Array, Array]:
-        """The number."""
-        return row["torque"] + 0.0 * omega, 0.0 * omega
-
-    def by(self, omega: Array, row: Mapping[str, Any]) -> dict[str, Array]:
-        """One."""
-        return {"torque": np.ones_like(omega)}
+    return TorqueSource(
+        lambda theta, omega, row: (row["torque"] + 0.0 * omega, 0.0 * omega), {"torque": value},
+        lambda omega, row: {"torque": np.ones_like(omega)}, varies=False,
+    )  # fmt: skip
 
 
-class OverAngle(TorqueSource):
+def _over_angle(load: OverTheta) -> TorqueSource:
     """A load over theta."""
-
-    varies = False
-
-    def __init__(self, load: OverTheta) -> None:
-        self.load = self.over = load
-
-    def both(self, theta: Array, omega: Array, row: Mapping[str, Any]) -> tuple[Array, Array]:
-        """The load."""
-        return np.broadcast_to(self.over.value(theta), omega.shape) + 0.0 * omega, 0.0 * omega
+    return TorqueSource(
+        lambda theta, omega, row: (load.value(theta) + 0.0 * omega, 0.0 * omega), varies=False, load=load
+    )
 
 
-class OfMotor(TorqueSource):
+def _of_motor(motor: Motor) -> TorqueSource:
     """A motor: a table or Kloss's formula."""
-
-    def __init__(self, motor: Motor) -> None:
-        self.motor, self.numbers, self.knots = motor, motor.numbers, motor.knots
-        most = self.numbers.get("synchronous_speed")
-        if most is None:
-            most = max(self.knots, key=abs)
-        self.way = np.where(np.asarray(most) < 0.0, -1.0, 1.0)
-
-    def both(self, theta: Array, omega: Array, row: Mapping[str, Any]) -> tuple[Array, Array]:
-        """The motor's torque."""
-        return self.motor.both(omega, row)
-
-    def by(self, omega: Array, row: Mapping[str, Any]) -> dict[str, Array]:
-        """The derivatives of the motor's torque."""
-        return self.motor.by(omega, row)
-
-    def speeds(self, row: Mapping[str, Any]) -> Array:
-        """The motor's."""
-        return self.motor.speeds(row)
+    most = motor.numbers.get("synchronous_speed")
+    if most is None:
+        most = max(motor.knots, key=abs)
+    way = np.where(np.asarray(most) < 0.0, -1.0, 1.0)
+    return TorqueSource(
+        lambda theta, omega, row: motor.both(omega, row), motor.numbers, motor.by, motor.speeds, motor.knots,
+        way=way,
+    )  # fmt: skip
 
 
-class OfFunction(TorqueSource):
+class TorqueFunction:
     """A function of t, theta and omega, of which time must not matter."""
 
     def __init__(self, function: Callable[..., Any], roles: tuple[str, ...]) -> None:
-        self.of_speed_alone = roles == ("omega",)
         self.roles, self.name = roles, getattr(function, "__name__", type(function).__name__)
         self.function, self.takes_arrays = by_position(function), True
         if hasattr(function, "py_func"):  # compiled by numba: for one point, which may branch
@@ -180,18 +147,17 @@ def source_of(torque: Any) -> TorqueSource:
     if torque is None:
         raise TypeError(f"torque is missing: {EXPECTED}")
     if isinstance(torque, Motor):
-        return OfMotor(torque)
+        return _of_motor(torque)
     if isinstance(torque, Load):
         load = as_load("torque", torque)
         if not isinstance(load, OverTheta):
             raise TypeError(f"torque = {load!r}: a torque over theta or omega is expected")
-        return OverAngle(load)
+        return _over_angle(load)
     if not callable(torque):
-        return ConstantTorque(number_or_array(Input("torque", "N*m", ""), torque))
+        return _constant(number_or_array(Input("torque", "N*m", ""), torque))
     roles = arguments_of("torque", torque, ("t", "theta", "omega"))
     if roles == ("theta",):
         return source_of(as_load("torque", torque))
-    found = OfFunction(torque, roles)
-    theta = np.linspace(0.0, 6.0, 7)
-    found.check_time(theta, theta + 1.0)
-    return found
+    function, theta = TorqueFunction(torque, roles), np.linspace(0.0, 6.0, 7)
+    function.check_time(theta, theta + 1.0)
+    return TorqueSource(function.both, of_speed_alone=roles == ("omega",))
