@@ -15,7 +15,7 @@ from ..mechanism.names import LOADS
 from ..support.template import file_text, filled
 from .answers import require_target, written
 from .parser import SIGNS, add_command
-from .words import UsageError, arguments_of
+from .words import UsageError, arguments_of, name_of
 
 # Call -> what it answers, in a line of `desaxe --help`, and the words of an example.
 CALLS = {
@@ -197,7 +197,8 @@ def _quantities(call: str, names: list[str]) -> list[Any]:
         )
     if first.name != "names" and len(names) != 1:
         raise UsageError(f"desaxe {call} takes one {what}, got {len(names)}")
-    return [names if first.name == "names" else names[0]] if names else []
+    measures = [name_of(name) for name in names] if what == "quantity" else names
+    return [measures if first.name == "names" else measures[0]] if names else []
 
 
 def _motor(options: argparse.Namespace) -> dict[str, Any]:

@@ -33,7 +33,7 @@ def arguments_of(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
         if not dot and head not in arguments:
             arguments[head] = value
         elif dot and isinstance(arguments.setdefault(head, {}), dict):
-            arguments[head][_name(entry)] = value
+            arguments[head][name_of(entry)] = value
         else:
             raise UsageError(f"{key}={text}: {head} has a value already")
     return names, arguments
@@ -102,7 +102,7 @@ def _float(text: str) -> float | str:
         return text
 
 
-def _name(entry: str) -> Any:
+def name_of(entry: str) -> Any:
     """The key of an entry: a name, or a pair such as `absmax:a_C`."""
     parts = entry.split(":")
     return tuple(parts) if len(parts) > 1 else entry

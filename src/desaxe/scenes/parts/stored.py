@@ -32,7 +32,7 @@ def request_of(content: Content) -> SweepRequest:
                     f"peak #{number}.over.{name}: a sweep takes peaks of the designs of its grid; "
                     "sweep these in a scene of their own"
                 )
-    peaks = tuple(PeakRequest(peak.quantity, peak.kind, peak.theta) for peak in content.peaks)
+    peaks = tuple(dict.fromkeys(PeakRequest(one.quantity, one.kind, one.theta) for one in content.peaks))
     return SweepRequest(
         list(content.outputs), arrays_of(inputs), content.branch, content.accuracy, content.threads,
         content.reduction, peaks, "auto" if content.chunks is None else content.chunks, content.memory,
