@@ -6,14 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
-from ..mechanism.names import sensitivity
 from ..mechanism.quantity_units import UnitSystem
 from ..mechanism.read import number_of, read
 from ..support.extras import needed
 from ..support.shown import shown
 from .picture import Picture
-from .shared import BLUE, ORANGE, finish, label_of, raised
-from .titles import title_of
+from .shared import BLUE, ORANGE, finish, raised
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,14 +30,12 @@ def tornado(
 ) -> Picture:
     """Draw what a change of each input does to a quantity, by its exact sensitivities; a Picture of the bars.
 
-    result   a dict with `value` and `gradient`, as `desaxe.peak` and `desaxe.tolerance` give for one design;
-             or a Dataset of `desaxe.grid` at one point, with the quantity and its sensitivities
+    result   a dict with `value` and `gradient`, as `desaxe.peak` and `desaxe.tolerance` give for one design
     changes  dict input -> half its range: in the units of the result, or texts such as "0.1 mm"; signs do
              not matter
-    name     the quantity: of a Dataset it is needed, of a dict it makes the label
-    units    the units of a dict's numbers, as a machine gives them ("mm, deg, rpm"); SI units without. A
-             Dataset knows its own
-    title    what it is headed with; by default the value, where it is reached, and of a Dataset its inputs
+    name     the quantity, for the label
+    units    the units of its numbers ("mm, deg, rpm"); those of an answer of a machine, SI units without
+    title    what it is headed with; by default the value, and where it is reached
     ax       where to draw: a matplotlib Axes; by default a new Figure
 
     To first order: each bar ends at value -+ slope times change, orange where the input is larger, blue where
@@ -49,8 +45,8 @@ def tornado(
         from matplotlib.figure import Figure
     if not isinstance(changes, Mapping):
         raise TypeError(f"changes = {shown(changes)}: expected a dict input -> half its range")
-    system = _units_of(result, changes) if hasattr(result, "data_vars") else UnitSystem.read(units)
-    value, slopes, label = _value_and_slopes(result, changes, name, system)
+    system = UnitSystem.read(getattr(result, "system", None) if units is None else units)
+    value, slopes = _value_and_slopes(result, changes)
     steps = {p: abs(_number(p, change, system)) for p, change in changes.items()}
     order = sorted(steps, key=lambda p: abs(slopes[p]) * steps[p])
     if ax is None:
@@ -64,47 +60,25 @@ def tornado(
     ]
     ax.set_yticks(rows, [f"{p} ± {_text(p, changes[p], system)}" for p in order])
     ax.axvline(value, color="0.2", linewidth=1.0)
-    ax.set_xlabel(label)
+    ax.set_xlabel(_label(name, system))
     ax.locator_params(axis="x", nbins=6)
     finish(ax, "x", ("top", "right", "left"))
     ax.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    ax.set_title(
-        _title(result, name, value, system) if title is None else title, loc="left", fontsize="medium"
-    )
+    title = value_text(result, name, system) if title is None else title
+    ax.set_title(title, loc="left", fontsize="medium")
     return Picture(ax, bars)
 
 
-def _units_of(dataset: Any, changes: Mapping[str, Any]) -> UnitSystem:
-    """The units of the inputs of a Dataset."""
-    there = {p: dataset[p].attrs.get("units") for p in changes if p in dataset.coords}
-    return UnitSystem.read({p: unit for p, unit in there.items() if unit not in (None, "1")})
-
-
-def _value_and_slopes(
-    result: Any, changes: Mapping[str, Any], name: str, system: UnitSystem
-) -> tuple[float, dict[str, float], str]:
-    """The value, its derivatives by the changed inputs, and the label."""
-    if isinstance(result, Mapping) and "gradient" in result:
-        value, gradient, label = result["value"], result["gradient"], _label(name, system)
-    elif name in result:
-        rows = {p: sensitivity(name, p) for p in changes}
-        gradient = {p: result[row].values for p, row in rows.items() if row in result}
-        value, label = result[name].values, label_of(result[name])
-    else:
-        raise ValueError(f"name = {name!r}: the dataset has {', '.join(map(str, result))}")
+def _value_and_slopes(result: Any, changes: Mapping[str, Any]) -> tuple[float, dict[str, float]]:
+    """The value, and its derivatives with respect to the changed inputs."""
+    if not isinstance(result, Mapping) or "gradient" not in result:
+        raise TypeError(f"plot.tornado: expected a dict with value and gradient, got {shown(result)}")
+    gradient = result["gradient"]
     missing = [p for p in changes if p not in gradient]
     if missing:
         there = ", ".join(gradient) or "none"
         raise ValueError(f"changes: no slope by {missing[0]} in this result, there are: {there}")
-    return _scalar(value), {p: _scalar(gradient[p]) for p in changes}, label
-
-
-def _title(result: Any, name: str, value: float, system: UnitSystem) -> str:
-    """The value, the angle at which it is reached, and the inputs of a Dataset."""
-    if hasattr(result, "data_vars"):
-        unit = raised(str(result[name].attrs.get("units", "")))[1:-1]
-        return f"{name} = {value:.6g} {unit}".rstrip() + f"\n{title_of(result, [name])}"
-    return value_text(result, name, system)
+    return _scalar(result["value"]), {p: _scalar(gradient[p]) for p in changes}
 
 
 def value_text(result: Mapping[str, Any], name: str, system: UnitSystem) -> str:
