@@ -101,7 +101,9 @@ class ShaftCycle(Cycle):
             edges = self._edges_of(k, names)
             mine = free & (np.abs(angles[..., None] - edges).min(-1, initial=np.inf) < NEAR)
             free &= ~mine
-            found = Cycle.moves(own, _bases(names), angles - self.sliders.members[k].firing)
+            places = (angles - self.sliders.members[k].firing).reshape(1, -1)
+            moved = Cycle.moves(own, _bases(names), places)
+            found = {name: shift.reshape(angles.shape) for name, shift in moved.items()}
             found |= {f"{name}[{k}]": np.ones(angles.shape) for name in ("phase", "bank")}
             for name, shift in found.items():
                 moves[name] = np.where(mine, shift, moves.get(name, 0.0))
@@ -113,6 +115,10 @@ class ShaftTurn(Turn, ShaftCycle):
 
     def __init__(self, caller: str, sliders: SliderSums, inputs: Mapping[str, Any], ends: Any = None) -> None:
         ShaftCycle.__init__(self, caller, sliders, inputs, ends)
+
+    def moves(self, names: Sequence[str], angles: Array) -> dict[str, Array]:
+        """By how much each input moves angles of jumps, in an array of any shape."""
+        return ShaftCycle.moves(self, names, angles)
 
     @computed_once
     def moving_parameters(self) -> tuple[str, ...]:

@@ -14,9 +14,13 @@ from ..mechanism.own import using
 from ..mechanism.quantity_units import unit_of, units_of_extreme
 from ..mechanism.status import PeakStatus
 from ..runtime.request import is_steady, several
+from ..simulation.checks import check_inertia, drive_of, follows_the_slider, scalar
+from ..simulation.request import Ask, in_time
+from ..simulation.result import Simulation
 from ..support.answer import Answer
 from .cycle import ShaftTurn
 from .extreme import extreme_of
+from .motion import ShaftModel
 from .sums import SliderSums, indexed, number
 
 if TYPE_CHECKING:
@@ -52,6 +56,29 @@ class Sliders(SliderSums):
                 for k in range(int(np.prod(shape)))
             ]
             return Answer(_stacked(found, shape), partial(units_of_extreme, name), PeakStatus)
+
+    def motion(self, ask: Ask, given: Mapping[str, Any], starts: Mapping[str, Any], times: Any) -> Simulation:
+        """`desaxe.simulate` of the shaft."""
+        here = self.replaced({n: v for n, v in given.items() if v is not None})
+        turn = ShaftTurn("simulate", here, {})
+        if turn.has_friction or turn.margin <= 0.0:
+            raise ValueError("simulate: the crank of several sliders turns fully, without friction: "
+                             + ("mu = 0" if turn.has_friction else "margin > 0"))  # fmt: skip
+        if follows_the_slider(starts["torque"]):
+            raise TypeError("torque: of several sliders; a function is of t, theta, omega")
+        drive = drive_of(starts["torque"], None, None, ask.deadline, ask.derivative)
+        start = (
+            scalar("theta0", starts["theta0"], "rad"),
+            scalar("omega_start", starts["omega_start"], "rad/s"),
+        )
+
+        def moves(theta: float) -> dict[str, float]:
+            return {p: float(shift[0]) for p, shift in turn.moves(["T_in"], np.array([theta])).items()}
+
+        model = ShaftModel(here, drive.torque, moves, ask.deadline)
+        check_inertia(model, start[0])
+        with using(self.definitions):
+            return in_time(ask, model, start, times, {"sliders": here}, {})
 
     def grid(self, names: Any, inputs: Mapping[str, Any], accuracy: Any, **options: Any) -> "xr.Dataset":
         """`desaxe.grid` of the shaft: the outer product of its inputs."""

@@ -180,6 +180,15 @@ class SliderSums:
         """The inputs of all sliders in their frames."""
         return [self.inputs_of(k) for k in range(len(self.members))]
 
+    def numbers(self) -> dict[str, Any]:
+        """The inputs that are numbers by name, of all sliders and of one, their angles, and loads."""
+        found: dict[str, Any] = {**self.gravity, "I_shaft": self.I_shaft}
+        for k, member in enumerate(self.members):
+            angles = {"phase": member.phase, "bank": member.bank}
+            found |= {f"{name}[{k}]": value for name, value in {**member.inputs, **angles}.items()}
+            found |= {n: v for n, v in member.inputs.items() if n != "branch"}
+        return found
+
     @staticmethod
     def _gravity_along(bank: Any) -> dict[str, dict[str, Any]]:
         """A slider's gravity by that in the frame of the shaft."""

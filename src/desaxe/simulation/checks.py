@@ -62,13 +62,14 @@ def one(name: str, value: Any) -> float:
     return read(INPUTS[name], value, "simulate")
 
 
-def check_names(names: Any) -> tuple[str, ...]:
-    """Check the requested names: quantities or sensitivities of a given state."""
+def check_names(names: Any, of_design: bool = True) -> tuple[str, ...]:
+    """Check the requested names: of a design, quantities or sensitivities of a given state."""
     wanted = (names,) if isinstance(names, str) else several(names)
     for name in wanted:
         if name in OWN - {"omega"}:
             raise ValueError(f"names: {name!r} is always among the results")
-        quantity(name, state=True)
+        if of_design:
+            quantity(name, state=True)
     return wanted
 
 
@@ -119,7 +120,7 @@ def model_of(values: Mapping[str, float], branch: int, theta0: float, drive: Act
         model = Model(values, branch, FREE, drive)
     elif grows(values) and theta_intervals(*lengths) != [(0.0, TURN)]:
         model = Model(values, branch, Coordinate(*arc, 0.5 * (arc[1] - arc[0])), drive)
-    _check_inertia(model, theta0)
+    check_inertia(model, theta0)
     return model
 
 
@@ -144,7 +145,8 @@ def _feasible(lengths: tuple[float, ...]) -> Message:
     return "with " + design + " theta goes " + listed(arcs, " or ")
 
 
-def _check_inertia(model: Model, theta0: float) -> None:
+def check_inertia(model: Model, theta0: float) -> None:
+    """ValueError where a motion starts without inertia."""
     inertia = float(model.inertia(theta0))
     if isnan(inertia):
         start = "theta0 = " + amount("theta", theta0, "g")

@@ -5,7 +5,7 @@ state. That piece goes on smoothly a little beyond the kink at which the motion 
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import copysign, inf, isfinite, isnan, nextafter
 from typing import Any, NamedTuple
 
@@ -74,6 +74,10 @@ class Curve(ABC):
     def kinks(self, lengths: tuple[float, ...], branch: int) -> list[tuple[float, float]]:
         """The angles of one period at which pieces meet, and that period [rad]."""
         return []
+
+    def moves(self, theta: float) -> Mapping[str, float]:
+        """By how much inputs move a kink at an angle, where that is not the design's to say."""
+        return {}
 
     def stand(self, design: SliderDesign, lengths: tuple[float, ...], branch: int) -> None:  # noqa: B027
         """Stand in a design; ValueError where it has not the dead centre that a load is measured from."""

@@ -68,9 +68,8 @@ def integrated(run: March, names: Sequence[str], times: Any, given: Mapping[str,
     t = instants_of(times, run.t)
     motion = Motion.of(run)
     theta, omega, alpha = motion.histories(t)
-    loads = {
-        name: _along(curve, t, theta, omega) for name, curve in zip(FORCES, run.model.drive[1:], strict=True)
-    }
+    curves = () if "sliders" in given else zip(FORCES, run.model.drive[1:], strict=True)
+    loads = {name: _along(curve, t, theta, omega) for name, curve in curves}
     residual = energy_residual(run)
     told = run.t, run.status, run.message, run.events, PANELS, run.settings.rtol, *residual, float(run.y[W])
     return result_of(t, (theta, omega, alpha), Ended(*told, motion.states), names, {**given, **loads})

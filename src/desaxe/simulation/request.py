@@ -14,6 +14,7 @@ from .energy.motion import design_of, motion_of
 from .energy.serves import tables_alone
 from .history import FORCES, instants_of, integrated
 from .march import March, Settings
+from .model import Model
 from .result import Simulation
 from .torque_derivative import TorqueDerivative
 
@@ -55,6 +56,23 @@ def one_motion(
             motion = motion_of(model, design, ask.until, asked, ask.rtol, ask.max_steps, ask.deadline)
             if motion is not None:
                 return motion.result(ask.names, times, {**known, **loads})
+    kept = zip(FORCES, drive[1:], strict=True)
+    curves = {n: c.load for n, c in kept if isinstance(c, (AngleCurve, PositionCurve))}
+    return in_time(ask, model, start, times, known, curves)
+
+
+def in_time(
+    ask: Ask,
+    model: Model,
+    start: tuple[float, float],
+    times: Any,
+    known: Mapping[str, Any],
+    loads: Mapping[str, Any],
+) -> Simulation:
+    """The motion of a model by panels of time.
+
+    known, loads   its inputs for names, and those that vary with the motion, for derivatives
+    """
     y = np.array([model.coordinate.q(start[0]), start[1] * sqrt(model.inertia(start[0])), 0.0])
     with np.errstate(all="ignore"):  # values beyond every double end the motion with a status
         run = March(model, y, ask.t_end, ask.until, Settings(ask.rtol, ask.max_steps), ask.deadline)
@@ -64,7 +82,5 @@ def one_motion(
         with IMPORTS:
             from .slopes import add_slopes
 
-        kept = zip(FORCES, drive[1:], strict=True)
-        known |= {n: c.load for n, c in kept if isinstance(c, (AngleCurve, PositionCurve))}
-        add_slopes(result, run, ask.wrt, known)
+        add_slopes(result, run, ask.wrt, {**known, **loads})
     return result

@@ -109,7 +109,7 @@ class Shifts:
     def kink(self, curve: Curve, theta: float) -> Array:
         """The shift of a kink of a load by each parameter: one over the slider moves with the lengths."""
         if not isinstance(curve, PositionCurve):
-            return self.tangents.by_lengths({})
+            return self.tangents.by_lengths(curve.moves(theta))
         load = curve.load
         known = self.tangents.values(load.motion(("theta", *LENGTHS)), theta)
         numbers = {name: float(value) for name, value in known.items()}

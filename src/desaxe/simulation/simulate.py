@@ -21,9 +21,9 @@ def simulate(
     *,
     torque: Any,
     t_end: Any,
-    AB: Any,
-    BC: Any,
-    ec: Any,
+    AB: Any = None,
+    BC: Any = None,
+    ec: Any = None,
     theta0: Any = 0.0,
     omega_start: Any = 0.0,
     names: str | Sequence[str] = (),
@@ -48,6 +48,7 @@ def simulate(
     max_steps: int = 1_000_000,
     threads: int | None = None,
     timeout: float | None = 600.0,
+    sliders: Any = None,
 ) -> Simulation:
     """The motion of the crank under a torque.
 
@@ -72,6 +73,7 @@ def simulate(
     max_steps    more panels than this are a failure
     timeout      seconds of computing, None for no limit: then one motion ends with status 4 and what there is
                  of it, and many designs with a TimeoutError
+    sliders      those of a `Crankshaft` that turns fully, without friction; torque is of t, theta, omega
     threads      for many designs: how many threads share them, all there are without
 
     Returns a dict that shows itself on one screen:
@@ -114,15 +116,18 @@ def simulate(
     }  # fmt: skip
     given = with_labelled(given)
     check_common({}, branch, threads)
-    wanted = check_names(names)
+    wanted = check_names(names, sliders is None)
     max_steps = whole_number("max_steps", max_steps, 1, 10**9)
     deadline = Deadline("simulate", timeout)
     end = scalar("t_end", t_end, "s", TINY, "a finite time > 0")
     instants, angles, rtol = read_times(times, end), read_until(until), read_rtol(rtol)
     starts = {"theta0": theta0, "omega_start": omega_start, "torque": torque}
-    by = read_wrt(wrt, {**given, **starts})
+    by = read_wrt(wrt, {**given, **starts, **({} if sliders is None else sliders.numbers())})
     slopes = torque_derivative(torque, derivative) if by else None
     ask = Ask(end, wanted, int(branch), rtol, max_steps, deadline, by, slopes, angles)
+    if sliders is not None:
+        motion: Simulation = sliders.motion(ask, given, starts, instants)
+        return motion
     motors = torque.numbers.values() if isinstance(torque, Motor) else ()
     if any(map(is_array, (*given.values(), *starts.values(), *motors))):
         return simulate_rows(ask, given, starts, instants, threads)

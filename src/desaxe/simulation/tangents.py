@@ -65,7 +65,8 @@ class Tangents:
     def _names(self, name: str, *state: str) -> list[str]:
         """A quantity and its derivatives by these variables of the state and by the inputs."""
         slopes = [_slope(name, p) for p in ("theta", *state, *self.of_design) if p != "mu"]
-        return [name, *(slope for slope in slopes if has(slope, True))]
+        several = "sliders" in self.inputs  # whose sums have derivatives by every input
+        return [name, *(slope for slope in slopes if several or has(slope, True))]
 
     def _rows(self, name: str, known: Mapping[str, Array], by_theta: Array, by_omega: Any = None) -> Array:
         """The derivatives of a quantity, from those of angle and speed."""

@@ -38,6 +38,7 @@ class DesignRows(NamedTuple):
     numbers   inputs of the mechanism: a number for all, or an array with one for each
     motor     the same of the torque's parameters
     J, way    of each: the flywheel's inertia, and 1 or -1
+    turn      of several sliders on one crankshaft, in place of numbers: their turn
     """
 
     size: int
@@ -49,6 +50,7 @@ class DesignRows(NamedTuple):
     J: Array
     way: Array
     turns: int
+    turn: Any = None
 
     def rows(self, index: Array) -> "DesignRows":
         """Some of the designs."""
@@ -91,7 +93,7 @@ class DesignRows(NamedTuple):
     def values(self, names: Sequence[str], x: Array, **other: Any) -> dict[str, Array]:
         """Quantities at angles, by `evaluate`; `other` inputs replace those of the designs."""
         inputs: dict[str, Any] = {n: self.each(v, x.ndim) for n, v in self.numbers.items()}
-        inputs |= {**self.loads, **other}
+        inputs |= {**self.loads, **({} if self.turn is None else {"sliders": self.turn.sliders}), **other}
         present = {n: v for n, v in inputs.items() if v is not None}
         found = evaluate(list(names), theta=self.theta(x), branch=self.branch, **present)
         return {name: np.broadcast_to(found[name], x.shape) for name in names}
@@ -99,10 +101,12 @@ class DesignRows(NamedTuple):
     @property
     def cycle(self) -> Cycle:
         """The designs over their period, in the way of a crank that turns forwards."""
-        return Cycle(self.numbers, self.loads, self.branch, self.turns)
+        return self.turn or Cycle(self.numbers, self.loads, self.branch, self.turns)
 
     def lengths(self) -> list[Array]:
-        """ec, AB and BC of each design."""
+        """ec, AB and BC of each design; several sliders have none in common."""
+        if self.turn is not None:
+            return [np.full(self.size, np.nan) for _ in LENGTHS]
         return [np.broadcast_to(np.asarray(self.numbers[n], float), (self.size,)) for n in LENGTHS]
 
     def kinks(self, load: Load) -> Array:
@@ -116,6 +120,8 @@ class DesignRows(NamedTuple):
         period = self.period
         loads = [*self.loads.values(), *([self.source.load] if self.source.load is not None else [])]
         found = [np.tile([0.0, period], (self.size, 1)), *map(self.kinks, loads)]
+        if self.turn is not None:
+            found.append(self.turn.edges(["T_in"]) * self.way[:, None] % period)
         if self.has_friction:
             own = dead_centres(self.lengths()) * self.way[:, None]
             found += [(own + 2.0 * pi * k) % period for k in range(self.turns)]
@@ -124,6 +130,8 @@ class DesignRows(NamedTuple):
 
 def vanishing(designs: DesignRows) -> Array:
     """True for designs without any inertia at a dead centre."""
+    if designs.turn is not None:  # each of several sliders has its own
+        return np.zeros(designs.size, bool)
     x = np.nan_to_num(dead_centres(designs.lengths()))
     there = designs.values(["M_eff"], x)["M_eff"] + designs.J[:, None]
     between = designs.values(["M_eff"], x + 1.0)["M_eff"]

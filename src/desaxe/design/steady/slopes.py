@@ -29,6 +29,8 @@ JUMP = 1e-9  # of the largest z': less is none
 
 def parameters(designs: DesignRows) -> tuple[str, ...]:
     """The inputs of the mechanism by which the torque has derivatives."""
+    if designs.turn is not None:
+        return tuple(designs.turn.moving_parameters)
     everything = {**designs.numbers, **designs.loads, "omega": 1.0, "alpha": 1.0}
     asked = request(("T_in",), everything, designs.branch, "standard")
     return tuple(n for n in asked.inputs if n not in ("theta", "omega", "alpha") and n in designs.numbers)

@@ -1,6 +1,7 @@
 """`steady`: the periodic motion of a machine on its motor, and its derivatives."""
 
 from collections.abc import Mapping
+from math import lcm
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from .states import states_of
 
 Array = NDArray[Any]
 OWN = ("torque", "flywheel_inertia", "fluctuation", "branch")
+SPEEDS = ("omega0", "omega", "alpha")
 MOST_TURNS = 4  # after which loads repeat; two in a four-stroke engine
 CHUNK = 1000  # designs at once
 FLYWHEEL = Input("flywheel_inertia", "kg*m^2", "", 0.0, "a finite moment of inertia >= 0")
@@ -32,7 +34,13 @@ FLUCTUATION = Input("fluctuation", "1", "", 1e-9, "a number above 0, at least 1e
 
 @with_known_keywords
 def steady(
-    *, torque: Any, flywheel_inertia: Any = 0.0, fluctuation: Any = None, branch: int = 1, **inputs: Any
+    *,
+    torque: Any,
+    flywheel_inertia: Any = 0.0,
+    fluctuation: Any = None,
+    branch: int = 1,
+    sliders: Any = None,
+    **inputs: Any,
 ) -> Steady:
     """The steady state of a machine on its motor: the periodic motion that it settles into.
 
@@ -41,6 +49,7 @@ def steady(
                       `over_theta`, or a number, which fixes a speed only where the guide has friction
     flywheel_inertia  added to the crank [kg m2]
     fluctuation       the smallest flywheel that keeps this one is found instead
+    sliders           those of a `Crankshaft`, without friction
     inputs            lengths, masses, loads as in `evaluate`; F_X and F_Y may vary with the motion, over up
                       to four turns. omega0 only says which way the crank turns, if the motor does not
 
@@ -75,7 +84,7 @@ def steady(
         [13.09, 0.015, 0.013]
     """
     source = source_of(torque)
-    shape, designs, bad = _designs(source, flywheel_inertia, fluctuation, branch, inputs)
+    shape, designs, bad = _designs(source, flywheel_inertia, fluctuation, branch, inputs, sliders)
     wanted = None if fluctuation is None else _flat(_row(FLUCTUATION, fluctuation), shape)
     if wanted is not None and (not np.isfinite(wanted).all() or (wanted >= 2.0).any()):
         raise ValueError(f"fluctuation = {shown(fluctuation)}: it must be {FLUCTUATION.limit}")
@@ -87,7 +96,8 @@ def steady(
         if wanted is not None:
             part = with_flywheels(part, wanted[index])
         parts.append((index, part, states_of(part, gradient=True), wanted is not None))
-    about = {"inputs": {**designs.numbers, **designs.loads}, "torque": torque, "branch": int(branch)}
+    made_of = {**designs.numbers, **designs.loads, **({} if sliders is None else {"sliders": sliders})}
+    about = {"inputs": made_of, "torque": torque, "branch": int(branch)}
     return result_of(shape, parts, about)
 
 
@@ -106,17 +116,30 @@ def _flat(array: Array, shape: tuple[int, ...]) -> Array:
 
 
 def _designs(
-    source: TorqueSource, flywheel: Any, fluctuation: Any, branch: int, inputs: Mapping[str, Any]
+    source: TorqueSource,
+    flywheel: Any,
+    fluctuation: Any,
+    branch: int,
+    inputs: Mapping[str, Any],
+    sliders: Any,
 ) -> tuple[tuple[int, ...], DesignRows, NDArray[np.bool_]]:
     """The shape of the designs, these in rows, and which of them have a bad input."""
     given = {name: value for name, value in inputs.items() if value is not None}
+    turn = (
+        None
+        if sliders is None
+        else sliders.turn("steady", {n: v for n, v in given.items() if n not in SPEEDS})
+    )
+    given = given if turn is None else {n: v for n, v in given.items() if n in SPEEDS}
+    if turn is not None and turn.has_friction:
+        raise ValueError("steady: of several sliders without friction, mu = 0")
     check_inputs("steady", given, [*OWN, *(n for n in INPUTS if n != "theta")])
     check_common(given, branch)
     numbers, loads = loads_of(given)
     if np.any(np.asarray(numbers.pop("alpha", 0.0), float)):
         raise ValueError("alpha: steady finds the speed over a turn itself; leave it out")
     for name in LENGTHS:
-        if name not in numbers:
+        if turn is None and name not in numbers:
             as_number(name, None, LENGTHS, ("steady",))
     arrays = {name: as_array(name, value, LENGTHS, ("steady",)) for name, value in numbers.items()}
     speed = arrays.pop("omega0", None)
@@ -149,9 +172,15 @@ def _designs(
         turning["torque"] = source.load
     designs = DesignRows(
         count, rows(arrays), loads, int(branch), source, rows(motor), _flat(J, shape),
-        _flat(np.asarray(way, float), shape), turns_of("steady", turning, MOST_TURNS),
+        _flat(np.asarray(way, float), shape), _turns(turning, turn), turn,
     )  # fmt: skip
     return shape, designs, _bad(designs)
+
+
+def _turns(loads: Mapping[str, Any], turn: Any) -> int:
+    """After how many turns everything repeats."""
+    turns = turns_of("steady", loads, MOST_TURNS)
+    return turns if turn is None else lcm(turns, turn.turns)
 
 
 def _bad(designs: DesignRows) -> NDArray[np.bool_]:
