@@ -8,7 +8,8 @@ model         a design as functions of its state
 drive         torque and forces along the motion: values, slopes, smooth pieces
 coordinate    the coordinate in which a motion is smooth everywhere
 law           the equations of motion, with guide friction
-panel         one panel of time, by Newton's method
+panel         a solved panel of time
+collocation   panels made by compiled loops, a law as numbers for them
 march         one motion, panel by panel, cut at its events
 events        what happens inside a panel
 history       histories of angle, speed, quantities and energy
@@ -19,5 +20,5 @@ tangents      the derivatives of a state and its rates, at an instant
 shifts        how its cuts move with them
 torque_derivative   the derivatives of a torque that is a function
 energy        motions with the crank angle as the independent variable, where time does not enter
-loops         many motions under a compiled function, in plain loops whose text numba compiles
+loops         panels, and many motions under a compiled function, in plain loops, which are compiled
 """

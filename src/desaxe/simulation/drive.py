@@ -16,7 +16,7 @@ from ..loads.angles import crossings, zero_of
 from ..loads.arguments import by_position
 from ..loads.function import FunctionOverTheta
 from ..loads.load import Load, OverTheta, OverY, TableOverTheta
-from ..loads.motors import Motor, OverOmega
+from ..loads.motors import Kloss, Motor, OverOmega
 from ..loads.table import polynomial
 from ..mechanism.closed import TURN
 from ..mechanism.closed.angles import dead_centres
@@ -27,6 +27,7 @@ from ..support.shown import shown
 from .torque_derivative import TorqueDerivative
 
 Array = NDArray[np.float64]
+CONSTANT, OVER_THETA, OVER_OMEGA, KLOSS = range(4)  # closed forms
 AHEAD = 1e-9  # rad: which piece of a table follows an angle
 AHEAD_OF_Y = 1e-6  # rad: so far from a dead centre the slider has left its position
 BEHIND = 1e-8  # of the largest speed of a motor's table: which piece of it follows a speed
@@ -54,6 +55,9 @@ class Curve(ABC):
 
     knots: tuple[float, ...] = ()  # speeds at which pieces meet
     depends_on_time = False
+    closed_form: tuple[float, ...] | None = (
+        None  # kind and coefficients for compiled loops (see `newton.piece`)
+    )
 
     @abstractmethod
     def at(self, t: Any, theta: Any, omega: Any) -> Any:
@@ -87,7 +91,7 @@ class ConstantCurve(Curve):
     """A number."""
 
     def __init__(self, value: float) -> None:
-        self.value = value
+        self.value, self.closed_form = value, (CONSTANT, value)
 
     def at(self, t: Any, theta: Any, omega: Any) -> Any:
         """The number."""
@@ -103,6 +107,11 @@ class MotorCurve(Curve):
 
     def __init__(self, motor: Motor, piece: int | None = None) -> None:
         self.motor, self.piece, self.knots, self.numbers = motor, piece, motor.knots, motor.numbers
+        if isinstance(motor, Kloss):
+            most, slip, speed, gear = map(float, self.numbers.values())
+            self.closed_form = KLOSS, gear * copysign(most, speed), slip, speed, gear
+        elif isinstance(motor, OverOmega) and piece is not None:
+            self.closed_form = OVER_OMEGA, motor.table.origin(piece), *motor.table.rows[piece]
 
     def at(self, t: Any, theta: Any, omega: Any) -> Any:
         """The torque."""
@@ -168,7 +177,7 @@ class CubicCurve(Curve):
     """One cubic of a table over theta."""
 
     def __init__(self, row: Any, origin: float) -> None:
-        self.row, self.origin = row, origin
+        self.row, self.origin, self.closed_form = row, origin, (OVER_THETA, origin, *row)
 
     def at(self, t: Any, theta: Any, omega: Any) -> Any:
         """The cubic."""

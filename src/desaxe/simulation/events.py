@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from ..mechanism.closed import TURN
 from ..mechanism.messages import Message, amount, named
-from ..support.roots import root
+from ..support.roots import root, roots
 from .checks import SMALL
 from .coordinate import Coordinate
 from .law import JAMS_AT
 from .model import Model
-from .panel import NODES, SERIES, Panel
+from .panel import NODES, SERIES, Panel, basis
 from .result import DONE, JAMS, LIMIT, NO_INERTIA
 
 Array = NDArray[np.float64]
@@ -160,6 +160,41 @@ def events_in(
         (Crossing(panel.start + s * panel.h, mark, place, value) for s, mark, place, value in found),
         key=lambda event: event.t,
     )
+
+
+def events_along(
+    panels: Sequence[Panel], model: Model, marks: list[Mark], left: float
+) -> list[tuple[Crossing, Array]]:
+    """The events of panels on which nothing is cut and no speed vanishes, in order, with q and v there."""
+    y, series = np.array([panel.y for panel in panels]), np.array([panel.series for panel in panels])
+    theta = model.coordinate.theta(np.append(y[:, Q], panels[-1].end()[Q])).tolist()
+    found = [
+        (k, mark, model.coordinate.q(angle))
+        for mark in marks
+        if mark.kind != "limit"
+        for k, (a, b) in enumerate(pairwise(theta))
+        for angle in _between(a, b, mark.angle, mark.every)
+        if k or abs(angle - left) > NEAR
+    ]
+    if not found:
+        return []
+    index = np.array([k for k, _, _ in found])
+    values, y, series = np.array([value for *_, value in found]), y[index, : V + 1], series[index, : V + 1]
+
+    def state(s: Array) -> Array:
+        moved: Array = np.einsum("kij,jk->ki", series, basis(2.0 * s - 1.0, NODES))
+        return y + moved
+
+    first, last = y[:, Q] - values, y[:, Q] + series[:, Q].sum(axis=1) - values
+    nearer = np.where(np.abs(first) < np.abs(last), 0.0, 1.0)
+    s = roots(lambda s: state(s)[:, Q] - values, np.zeros(index.size), np.ones(index.size), first, last)
+    s = np.where(first * last < 0.0, s, nearer)
+    rows = zip(found, s.tolist(), state(s), strict=True)
+    events = [
+        (Crossing(panels[k].start + part * panels[k].h, mark, Q, value), now)
+        for (k, mark, value), part, now in rows
+    ]
+    return sorted(events, key=lambda event: event[0].t)
 
 
 Passage = tuple[float, Mark, int, float]

@@ -1,14 +1,14 @@
 """The motion of one design, panel by panel: cut at every kink, at rest while friction holds the crank."""
 
 from contextlib import suppress
-from math import copysign, inf, nextafter, pi, sqrt
+from math import copysign, inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.closed import TURN
 from ..support.deadline import Deadline
+from .collocation import BRIEF, Collocation, Limits
 from .events import (
     JAMMED,
     KINK,
@@ -20,30 +20,26 @@ from .events import (
     Q,
     V,
     angle_of,
+    events_along,
     events_in,
     failure,
-    growth,
-    limit_ahead,
     marks_of,
     time_of,
     words_of,
 )
 from .law import Contact, Law, Resting, State, law_ahead, rubbing, state_of
+from .loops.newton import TAIL
 from .model import Model
-from .panel import NODES, PLACES, SERIES, TAIL, Panel, Scales, ahead_of, basis, first_guess, resting, solve
+from .panel import NODES, SERIES, Panel, basis, resting
 from .result import DONE, FAILED, JAMS, REST, Event
 
 Array = NDArray[np.float64]
 SAME = 1e-9  # of a panel: events so close together are one instant
-MOST_TURNS = 1000  # in one panel
 AT_LIMIT = 1e-9  # rad: so near to a limit a load on a massless slider has grown without bound
 EXACT = 0.02  # tolerances: a panel whose inside is so exact need not be solved again up to a cut
-AIM = 0.01  # tolerances: the error that the next length is chosen for
 PROBES = 2000  # instants of a motion at which loads that depend on time are compared with the panels
 DEVIATES = 30.0  # tolerances: by so much a probe differs where nodes have missed something
-GROWTH = 2.0  # from panel to panel
 SHARP = 3e-11  # of a radian: a limit angle cannot be told better
-LEAST_H = 1e-6  # of the motion: no panel is shortened to less to tell a limit angle
 CHATTER = 6  # standstills in a row, all within a millionth of the time
 FLOOR = 0.01  # of the root of the energy that start and loads suggest: the least size of v
 
@@ -82,6 +78,8 @@ class March:
         kinks = [(mark.angle, mark.every or inf) for mark in self.marks if self._ends_stretch(mark)]
         self.kinks = np.array(kinks or np.empty((0, 2)))
         self.timed = any(curve.depends_on_time for curve in model.drive)
+        limits = Limits(t_end, settings.rtol, SHARP, self.kinks, np.array(model.drive.knots, np.float64))
+        self.collocation = Collocation(limits, 1 if self.timed else BRIEF)
 
     def to_the_end(self) -> "March":
         """Run until the end time, or what comes before it."""
@@ -243,95 +241,44 @@ class March:
     def _follow(self, law: Law) -> None:
         """Follow a law to the next kink, or the end."""
         while self.t < self.t_end:
-            self.steps += 1
-            if self.steps > self.settings.max_steps:
+            left = self.settings.max_steps - self.steps
+            if left <= 0:
                 self._fail(law, f"more than {self.settings.max_steps} steps")
                 return
-            panel = self._panel(law)
-            if panel is None:
+            panels = self._panels(law, left)
+            if not panels:
                 self._fail(law, "no panel of time resolves it, however short")
                 return
-            if self._meet_all(panel):
+            self.steps += len(panels)
+            self._accept_calm(panels[:-1])
+            if self._meet_all(panels[-1]):
                 return
-            self._accept(panel, panel.end())
+            self._accept(panels[-1], panels[-1].end())
             self.left = inf
         self.stop(DONE, "reached t_end = " + time_of(self.t_end))
 
-    def _panel(self, law: Law) -> Panel | None:
-        """The longest panel that the tolerance allows; None where none does."""
-        arc, wish = self.model.coordinate, self.h or self._first_length(law)
-        limited = self._until_cut(law)
-        h = min(wish, limited, self.t_end - self.t)
-        least = 10.0 * (nextafter(self.t, inf) - self.t)
-        while h >= least:
+    def _accept_calm(self, panels: list[Panel]) -> None:
+        """Accept panels that nothing cuts, with the events on them."""
+        if not panels:
+            return
+        for found, y in events_along(panels, self.model, self.marks, self.left):
+            self._tell_of(found, state_of(self.model, float(y[Q]), float(y[V])))
+        self.panels += panels[:-1]
+        self.top = max(self.top, *(abs(float(panel.y[V])) for panel in panels))
+        self._accept(panels[-1], panels[-1].end())
+        self.left = inf
+
+    def _panels(self, law: Law, most: int) -> list[Panel]:
+        """The next panels, of which only the last may be cut; none where the tolerance allows none."""
+        before = self.panels[-1] if self.panels and not self.panels[-1].law.rests else None
+        most, wish = 1 if self.timed else most, self.h
+        while True:
             self.deadline.check()
-            scales, error = Scales(self.settings.rtol, self.top), None
-            try:
-                panel = solve(law, self.t, h, self.y, self._guess(law, h), scales)
-            except (
-                ValueError,
-                ArithmeticError,
-            ) as raised:  # a load has no value: it may end before
-                panel, error = None, raised
-            if error is not None and 0.3 * h < least:
-                raise error
-            if panel is None:
-                h *= 0.3
-                continue
-            turns = abs(float(panel.end()[Q] - self.y[Q])) / TURN
-            factor = (AIM / panel.error) ** 0.0625 if panel.error > 0.0 else inf
-            if panel.error > 1.0 or turns > MOST_TURNS:
-                h *= max(0.1, min(0.7, factor, 0.5 * MOST_TURNS / (turns or 1.0)))
-                continue
-            if arc.half and (ahead := limit_ahead(panel, arc)) and self._blurs(panel, ahead):
-                h *= 0.5
-                continue
-            shorter = self._missed(panel) if self.timed else None
-            if shorter is not None:
-                h = shorter
-                continue
-            grown = h * min(GROWTH, max(factor, 0.5))
-            self.h = max(grown, wish) if h == limited else grown
-            end = self.t_end if self.t + h >= self.t_end * (1.0 - 1e-15) else self.t + h
-            return panel._replace(stop=end)
-        return None
-
-    def _blurs(self, panel: Panel, ahead: float) -> bool:
-        """True where the series of a panel do not reach a limit angle with the digits that are asked for."""
-        rtol = self.settings.rtol
-        return panel.error * TAIL * rtol * growth(ahead) > max(rtol, SHARP) and panel.h > LEAST_H * self.t_end
-
-    def _guess(self, law: Law, h: float) -> Array:
-        if self.panels and not self.panels[-1].law.rests:
-            return ahead_of(self.panels[-1], self.t, h)
-        return first_guess(law, self.t, h, self.y)
-
-    def _first_length(self, law: Law) -> float:
-        """The time of about a radian, at the rates of the start."""
-        speed, bend = map(abs, law.motion(self.t, float(self.y[Q]), float(self.y[V])))
-        times = [1.0 / speed if speed else inf, sqrt(2.0 / bend) if bend else inf, self.t_end]
-        return min(time for time in times if time == time and time > 0.0)
-
-    def _until_cut(self, law: Law) -> float:
-        """The time to a little behind the next angle that cuts the motion, or to before a limit angle."""
-        arc = self.model.coordinate
-        if not (self.kinks.size or arc.half):
-            return inf
-        speed, bend = law.motion(self.t, float(self.y[Q]), float(self.y[V]))
-        direction = copysign(1.0, speed or bend)
-        shortest = inf
-        if self.kinks.size:
-            angles, every = self.kinks.T
-            gaps = (angles - self.state.theta) * direction
-            with np.errstate(invalid="ignore"):
-                gaps = np.where(np.isinf(every), np.where(gaps > 1e-9, gaps, inf), np.mod(gaps, every))
-            gaps = gaps[gaps > 1e-9]
-            if gaps.size and not arc.half:
-                shortest = 1.1 * _time_over(float(gaps.min()), speed * direction, bend * direction)
-        if arc.half:
-            gap = 0.5 * pi - self.y[Q] * direction
-            shortest = min(shortest, 0.95 * _time_over(gap, speed * direction, bend * direction))
-        return shortest if shortest > 0.0 else inf
+            panels, self.h = self.collocation.advance(law, self.t, self.y, wish, self.top, before, most)
+            shorter = self._missed(panels[0]) if self.timed and panels else None
+            if shorter is None:
+                return panels
+            wish = shorter
 
     def _missed(self, panel: Panel) -> float | None:
         """A shorter length for a panel whose nodes have missed what a load does in time; None for none."""
@@ -467,9 +414,7 @@ class March:
         """The panel up to an event, and the state there: solved for, not interpolated, where that differs."""
         h = found.t - panel.start
         if panel.error > EXACT and h > 1e-6 * panel.h and h <= panel.h:
-            guess = panel.state(panel.start + h * PLACES)[:2].reshape(-1)
-            scales = Scales(self.settings.rtol, self.top)
-            panel = solve(panel.law, panel.start, h, panel.y, guess, scales) or panel
+            panel = self.collocation.part_of(panel, h, self.top) or panel
         t, y = found.t, panel.state(found.t)
         if found.place >= 0 and not (found.mark.kind == "limit" and self.model.coordinate.half):
             rates = panel.law.rates(np.array([t]), y[:1], y[1:2])
@@ -480,12 +425,3 @@ class March:
         if found.place >= 0:
             y[found.place] = found.value
         return panel._replace(stop=float(t)), y
-
-
-def _time_over(gap: float, speed: float, bend: float) -> float:
-    """The time over a distance at a speed that grows steadily; infinite where it ends before."""
-    square = speed * speed + 2.0 * bend * gap
-    if square < 0.0:
-        return inf
-    below = speed + sqrt(square)
-    return 2.0 * gap / below if below > 0.0 else inf

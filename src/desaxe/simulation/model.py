@@ -14,7 +14,9 @@ from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.names import CENTRES, LENGTHS
 from ..mechanism.program import Variant
-from ..runtime.kernels import STRUCTURAL_ZEROS
+from ..runtime.executor import CompiledKernel, kernel_for
+from ..runtime.kernels import STRUCTURAL_ZEROS, KernelKey
+from ..support.computed import computed_once
 from .coordinate import Coordinate
 from .drive import ConstantCurve, Curve, SliderDesign
 
@@ -59,6 +61,7 @@ class Actuation(NamedTuple):
         return Actuation(*(curve.ahead(theta, omega, direction, growing) for curve in self))
 
 
+HELD = ("omega", "alpha", "mu", "F_X", "F_Y")  # 0 in `still`
 KEPT = ("AB", "BC", *CENTRES)  # inputs that are passed where they are 0, too
 NOTHING = Actuation(ConstantCurve(0.0), ConstantCurve(0.0), ConstantCurve(0.0))
 
@@ -98,6 +101,14 @@ class Model(SliderDesign):
             call = self._calls[names] = _function(names, (*state, *self._design), tuple(fixed.items()))
         found: tuple[Any, ...] = call(*state.values(), *self._design.values())
         return found
+
+    @computed_once
+    def kernel(self) -> tuple[CompiledKernel, Array]:
+        """The kernel of `still` over the angle, and its packed inputs."""
+        values = {n: v for n, v in self.values.items() if n not in HELD}
+        zeros = dict(fixed_zeros(values)) | dict.fromkeys(HELD, 0.0)
+        kernel = kernel_for(KernelKey(STILL, form_of(values), tuple(zeros.items()), (("theta", 0),), 1))
+        return kernel, np.frombuffer(kernel.data({"branch": float(self.branch), **values}))
 
     def still(self, theta: Any) -> Still:
         """Inertia, gravity's torque and Y' at angles, with their slopes."""

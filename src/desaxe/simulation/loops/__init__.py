@@ -1,11 +1,13 @@
-"""Motions by DOP853 and by panels, in plain loops, which are compiled.
+"""Motions in plain loops, which are compiled: panels of time of one motion, and many motions at once.
 
+advance       panels of time, until something may cut the motion
+newton        one of them: the law at its nodes, and Newton's method
 motions       motions of designs one after the other, one call for all
 state         their state, where it starts and what becomes of it
 dop853        one of their steps in time
 dense         over a step, and inside of it
 tableau       the coefficients of both
-panel         panels of the crank angle in between, also from rest
+panel         panels of the crank angle, also from rest
 picard        what happens at their nodes
 inside_panel  the state inside of one
 nodes         their coefficients

@@ -1,0 +1,153 @@
+"""Panels of time by compiled loops: the law as numbers for them, and what they return as panels."""
+
+from collections.abc import Callable
+from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiler.llvm.loops import CompiledLoops
+from ..support.interrupts import finished
+from .law import Law, Rates
+from .loops import newton
+from .loops.advance import advance
+from .panel import INTEGRAL, NODES, PLACES, RUNNING, SERIES, Panel
+
+Array = NDArray[np.float64]
+BRIEF = 64  # panels of a call, which neither an interrupt nor a deadline stops
+TABLE = np.vstack([PLACES[None], RUNNING, INTEGRAL, SERIES[-2:]])
+_KINDS = (
+    *("f64[1]", "f64[1]", "f64[1]", "f64[2]", "f64[1]", "f64[1]", "f64[1]", "f64[2]", "f64[2]"),
+    *("f64[2]", "f64[2]", "f64[3]", "f64[3]", "f64[1]"),
+)
+_ANSWER = CFUNCTYPE(c_int64, c_void_p, c_void_p, c_int64)
+
+
+@cache
+def loops() -> CompiledLoops:
+    """The machine code of panels, compiled once a process."""
+    return finished(lambda: CompiledLoops(advance, _KINDS))
+
+
+class Limits(NamedTuple):
+    """The end of a motion, its tolerance, and the angles and speeds at which it is cut."""
+
+    t_end: float
+    rtol: float
+    sharp: float
+    kinks: Array
+    knots: Array
+
+
+class Collocation:
+    """Panels of one law after the other; the memory that they take while they are made."""
+
+    def __init__(self, limits: Limits, most: int) -> None:
+        """Allocate the records of a call."""
+        self.limits = limits
+        self.rows, self.matrix = np.empty((newton.ROWS, NODES)), np.empty((2 * NODES, 2 * NODES))
+        self.heads, self.records = np.empty((most + 1, 6)), np.empty((most + 1, 3, NODES + 1))
+        self.rates = np.empty((most + 1, 4, NODES))
+        self.error: BaseException | None = None
+        self.stops = False
+        self._last: Rates | None = None  # by the function that answers
+
+    def advance(
+        self, law: Law, t: float, y: Array, wish: float, top: float, before: Panel | None, most: int
+    ) -> tuple[list[Panel], float]:
+        """Panels from a state on, none of which but the last may be cut; the length that they suggest.
+
+        No panel: none resolves the law, however short. Raises what a load has raised that ends the motion.
+        """
+        law_numbers, data, keeper = self._numbers(law)
+        clock = np.array([t, wish, self.limits.t_end, self.limits.sharp])
+        scales, count = np.array([self.limits.rtol, top, top]), np.zeros(1)
+        if before is not None:
+            count[0] = 1.0
+            self.heads[0] = before.start, before.h, before.error, *before.y
+            self.records[0] = before.series
+        size, self.error, self.stops = min(most + 1, len(self.heads)), None, False
+        cuts = self.limits.kinks, self.limits.knots
+        records = self.heads[:size], self.records[:size], self.rates[:size]
+        known = law_numbers, data, TABLE, self.rows, self.matrix
+        loops()(y.copy(), clock, scales, *cuts, *known, *records, count)
+        del keeper
+        made = int(count[0])
+        if self.error is not None and (self.stops or not made):
+            raise self.error
+        return [self._panel(law, k) for k in range(1, made + 1)], float(clock[1])
+
+    def part_of(self, panel: Panel, h: float, top: float) -> Panel | None:
+        """A panel solved again up to a part of it; None where that fails."""
+        limits, none = self.limits, np.empty((0, 2))
+        self.limits = Limits(panel.start + h, limits.rtol, limits.sharp, none, none[:, 0])
+        try:
+            panels, _ = self.advance(panel.law, panel.start, panel.y, h, top, panel, 1)
+        except (ValueError, ArithmeticError):
+            return None
+        finally:
+            self.limits = limits
+        return panels[0] if panels and abs(panels[0].h - h) <= 1e-12 * h else None
+
+    def _panel(self, law: Law, k: int) -> Panel:
+        start, h, error, *_ = self.heads[k].tolist()
+        t_end = self.limits.t_end
+        stop = t_end if start + h >= t_end * (1.0 - 1e-15) else start + h
+        y, series = self.heads[k, 3:].copy(), self.records[k].copy()
+        q, v, work, omega = self.rates[k].copy()
+        rates = self._last if law.rubs else Rates(q, v, work, omega, None)
+        return Panel(law, start, h, y, series, stop, error, rates)
+
+    # ---- the law ------------------------------------------------------------------------------
+
+    def _numbers(self, law: Law) -> tuple[Array, Array, Any]:
+        """The numbers of a law, the packed inputs of its kernel, and what must live during a call."""
+        numbers, arc = np.zeros(newton.NUMBERS), law.model.coordinate
+        numbers[newton.HALF : newton.TORQUE] = arc.half, arc.first, arc.last
+        torque, force = law.drive.torque.closed_form, law.drive.F_Y.closed_form
+        numbers[newton.RUBS] = law.rubs
+        answer = _ANSWER(self._answer(law))
+        numbers[newton.ANSWER] = _address(answer)
+        data = np.zeros(1)
+        if not law.rubs and torque is not None and force is not None:
+            kernel, data = law.model.kernel
+            numbers[newton.KERNEL] = kernel.code.address
+            for first, form in ((newton.TORQUE, torque), (newton.FORCE, force)):
+                numbers[first : first + len(form)] = form
+        return numbers, data, answer
+
+    def _answer(self, law: Law) -> Callable[[int, int, int], int]:
+        """The function that the loops call where the law has no closed form."""
+
+        def answer(state_at: int, rows_at: int, slopes: int) -> int:
+            try:
+                memory: Any = (c_double * (2 * NODES)).from_address(state_at)
+                q, v = np.frombuffer(memory).reshape(2, NODES)
+                self._fill(law, q, v, bool(slopes))
+            except (ValueError, ArithmeticError) as raised:  # a load has no value: the panel may be shorter
+                self.error = raised
+                return newton.NONE
+            except BaseException as raised:
+                self.error, self.stops = raised, True
+                return newton.STOP
+            self.error = None
+            return 0
+
+        return answer
+
+    def _fill(self, law: Law, q: Array, v: Array, slopes: bool) -> None:
+        rows, here = self.rows, law.here(self.rows[newton.TIME], q, v)
+        rates = self._last = here.rates
+        rows[newton.ANGLE], rows[newton.SLOPE], rows[newton.SPEED] = here.theta, here.slope, here.omega
+        rows[newton.RATE_Q], rows[newton.RATE_V], rows[newton.RATE_W] = rates[:3]
+        rows[newton.CURVED] = rates.v / (here.root * here.slope)
+        if slopes:
+            jacobian = law.jacobian(here, q)
+            for k, row in enumerate((newton.Q_BY_Q, newton.Q_BY_V, newton.V_BY_Q, newton.V_BY_V)):
+                rows[row] = jacobian[k]
+
+
+def _address(function: Any) -> int:
+    return cast(function, c_void_p).value or 0
