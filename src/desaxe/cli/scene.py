@@ -48,13 +48,8 @@ def _scene(options: argparse.Namespace) -> int:
             raise UsageError(f'--tolerance {printable(name)}: expected INPUT=HALF, such as "ec=0.1 mm"')
     if pairs and options.page is None:
         raise UsageError("--tolerance is for the report: give --report FILE")
-    if options.page is None:
-        return run_scene(options.scene, options.overwrite)
-    from ..scenes.run_page import RunPage
-
     tolerances = {name.strip(): half.strip() for name, _, half in pairs}
-    page = RunPage(options.page, options.scene, tolerances, options.overwrite)
-    return run_scene(options.scene, options.overwrite, page)
+    return run_scene(options.scene, options.overwrite, options.page, tolerances)
 
 
 def add_scene(commands: Any) -> None:

@@ -10,16 +10,14 @@ from ..loads.load import Load
 from ..mechanism.names import LOADS
 from ..mechanism.own import Definition, used_by, using
 from ..mechanism.slips import warn_of_slips
-from ..scenes.document.content import DocumentContext, document_of, require_drawing
-from ..scenes.document.spread import read_tolerances
-from ..scenes.document.write import require_document, write_document
+from ..scenes.document.content import Page
+from ..scenes.document.write import checked, require_document, write_page
 from ..scenes.run import compute
 from ..support.files import as_path
 from ..support.progress import Steps
 from .load_tables import load_call, motor_table
 from .scenes import with_inputs
 
-FLUCTUATION = 0.03  # of the speed, for the flywheel
 MOTION, FORCES, STANDING = ("Y", "V_C", "a_C"), ("T_in", "N_C"), ("Y", "phi")
 
 
@@ -35,24 +33,22 @@ def write_report(
     """Compute the scene of a machine and write its document; the path."""
     if "results" in more:
         raise TypeError("report: no results are written but the page: leave results out")
-    place = as_path("path", path)
-    require_drawing()
-    require_document(place, overwrite)
-    names = _usual(machine) if outputs is None else outputs
+    page = Page(as_path("path", path), "", tolerances, fluctuation, overwrite)
+    require_document(page.path, overwrite)
     with warnings.catch_warnings(record=True) as heard:
         warnings.simplefilter("always")
         warn_of_slips(machine.in_units(), machine.units)
-        scene = machine.scene(names, **more)
+        scene = machine.scene(_usual(machine) if outputs is None else outputs, **more)
         content = scene.content
-        halves = read_tolerances(content, scene.shown_in, tolerances)
+        page = checked(page, content, scene.shown_in)
         with using(content.definitions):
-            found = compute(content, Steps(0, None), overwrite)
-    told = tuple(str(one.message) for one in heard if one.category.__module__.startswith("desaxe."))
+            run = compute(content, Steps(0, None), overwrite)
+    messages = tuple(str(one.message) for one in heard if one.category.__module__.startswith("desaxe."))
     with using(content.definitions):
         defined = [_definition(one) for one in used_by(content.outputs)]
-        command = _command(machine, place, outputs, tolerances, fluctuation, more)
-        asked = DocumentContext("\n".join([*defined, command]), told, halves, fluctuation)
-        return write_document(document_of(content, found, scene.shown_in, asked), place, overwrite)
+        calls = _calls(machine, page.path, outputs, tolerances, fluctuation, more)
+        page = page._replace(command="\n".join([*defined, calls]), warnings=messages)
+        return write_page(page, content, run, scene.shown_in)
 
 
 def _usual(machine: Mapping[str, Any]) -> tuple[str, ...]:
@@ -62,7 +58,7 @@ def _usual(machine: Mapping[str, Any]) -> tuple[str, ...]:
     return (*MOTION, *(FORCES if any(name in machine for name in LOADS) else ()))
 
 
-def _command(
+def _calls(
     machine: Any,
     path: Path,
     outputs: Any,
@@ -78,7 +74,7 @@ def _command(
     units = [f"units={machine.units!r}"] if machine.units else []
     options = [] if outputs is None else [f"outputs={outputs!r}"]
     options += [f"tolerances={dict(tolerances)!r}"] if tolerances else []
-    options += [f"fluctuation={fluctuation!r}"] if fluctuation != FLUCTUATION else []
+    options += [f"fluctuation={fluctuation!r}"] if fluctuation != Page._field_defaults["fluctuation"] else []
     options += [f"{name}={value!r}" for name, value in rest.items()]
     made = f"machine = desaxe.Machine({', '.join([*inputs, *units])})"
     return f"{made}\nmachine.report({', '.join([repr(str(path)), *options])})"

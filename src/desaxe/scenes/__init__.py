@@ -7,7 +7,6 @@ content      what a scene says, checked and in SI units
 run          Content -> values, peaks, checks, then files
 report       the result as text
 command      `desaxe run`
-run_page     its report as a document
 sweep        `desaxe.sweep`
 reading/     a file or mapping as Content
 parts/       what a run computes: grid, peaks, steady states, pictures

@@ -1,63 +1,77 @@
 """`desaxe run`: the report as soon as everything is computed, then the files."""
 
+import shlex
 import warnings
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Protocol
+from pathlib import Path
+from types import MappingProxyType
 
 from ..mechanism.own import using
 from ..support.progress import progress_bar
-from .report import files_report, report
-from .run import Run, compute, steps_of, write_files
+from ..support.shown import printable
+from .document.content import Page
+from .document.write import checked, write_page
+from .report import files_report, results_report
+from .run import FAILURES, Run, compute, failure, steps_of, write_files
 from .scene import Scene
 from .scene import scene as scene_of
 
 
-class Page(Protocol):
-    """The document of a run."""
-
-    def require(self, scene: Scene, heard: list[str]) -> None:
-        """Fail where it cannot be made of this scene; `heard` are the warnings so far."""
-
-    def write(self, scene: Scene, found: Run) -> Run:
-        """Write it; the run with its file, or with why there is none."""
-
-    def told(self, found: Run) -> str:
-        """The line on its file; empty where there is none."""
-
-
-def run_scene(source: str, overwrite: bool, page: Page | None = None) -> int:
-    """Run a scene, print its report, write its files; OSError at the end for those that failed."""
+def run_scene(
+    source: str,
+    overwrite: bool,
+    file: str | None = None,
+    tolerances: Mapping[str, str] = MappingProxyType({}),
+) -> int:
+    """Run a scene, print its report, write its files and its page, then OSError for those that failed."""
     with warnings.catch_warnings(record=True) as heard:
         scene = scene_of(source)
     for one in heard:
         warnings.showwarning(one.message, one.category, one.filename, one.lineno)
-    content = scene.content
-    if page is not None:
-        page.require(scene, [str(one.message) for one in heard])
-    steps = steps_of(content, None)
+    page = None
+    if file is not None:
+        page = Page(
+            Path(file), _command(source, overwrite, file, tolerances), tolerances, overwrite=overwrite
+        )
+        page = checked(page, scene.content, scene.shown_in, [str(one.message) for one in heard])
+    content, steps = scene.content, steps_of(scene.content, None)
     with using(content.definitions):
         with progress_bar() as steps.watch:
-            found = compute(content, steps, overwrite)
-        text = report(content, replace(found, failures=()), scene.shown_in)
-        broken = _printed(text) if text else None
+            run = compute(content, steps, overwrite)
+        broken = _printed(results_report(content, run, scene.shown_in))
         with progress_bar() as steps.watch:
-            found = write_files(content, found, steps, scene.shown_in, overwrite)
-            found = found if page is None else page.write(scene, found)
+            run = _with_page(page, scene, write_files(content, run, steps, scene.shown_in, overwrite))
     if broken is not None:  # whoever reads our output is gone, or the disk of it is full
         raise broken
-    told = files_report(content, replace(found, failures=()))
-    if told:
-        print(f"\n{told}".removeprefix("" if text else "\n"))
-    if page is not None and (told := page.told(found)):
-        print(f"\n{told}")
-    if found.failures:
-        raise OSError("; ".join(found.failures))
+    print("".join(f"\n\n{text}" for text in [files_report(content, replace(run, failures=()))] if text))
+    if page is not None and page.path in run.files:
+        print(f"\nReport\n  {printable(file)}")
+    if run.failures:
+        raise OSError("; ".join(run.failures))
     return 0
 
 
 def _printed(text: str) -> OSError | None:
     try:
-        print(text, flush=True)
+        print(text, end="", flush=True)
     except OSError as error:
         return error
     return None
+
+
+def _with_page(page: Page | None, scene: Scene, run: Run) -> Run:
+    """The run with the file of its page, or with why there is none."""
+    if page is None:
+        return run
+    try:
+        path = write_page(page, scene.content, run, scene.shown_in)
+    except FAILURES as error:
+        return replace(run, failures=(*run.failures, failure(str(page.path), error)))
+    return replace(run, files=(*run.files, path))
+
+
+def _command(source: str, overwrite: bool, file: str, tolerances: Mapping[str, str]) -> str:
+    words = ["desaxe", "run", source, "--report", file]
+    words += [word for name, half in tolerances.items() for word in ("--tolerance", f"{name}={half}")]
+    return shlex.join([*words, *["--overwrite"] * overwrite])

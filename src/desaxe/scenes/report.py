@@ -9,10 +9,14 @@ from .run import Run
 
 def report(content: Content, run: Run, units: UnitSystem) -> str:
     """The whole report, in these units."""
-    shown = in_units_shown(content, run, units)
-    return terminal(content.title, [*results(content, shown, units), *files(content, run)])
+    return "\n\n".join(filter(None, (results_report(content, run, units), files_report(content, run))))
+
+
+def results_report(content: Content, run: Run, units: UnitSystem) -> str:
+    """All but the files."""
+    return terminal(content.title, [*results(content, in_units_shown(content, run, units), units)])
 
 
 def files_report(content: Content, run: Run) -> str:
-    """The part of it on the files."""
+    """The files that were written, and those that were not."""
     return terminal("", [*files(content, run)])

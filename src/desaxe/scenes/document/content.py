@@ -5,14 +5,13 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import datetime
-from importlib import import_module
 from importlib.metadata import version
+from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ...evaluation.labels import source
 from ...mechanism.quantity_units import UnitSystem
-from ...support.extras import needed
 from ..content import Content
 from ..run import Run
 from .blocks import Document, Lines, Section, Text, TextTable
@@ -27,23 +26,22 @@ TITLE = "Offset slider-crank"
 PACKAGES = ("numpy", "numba")
 
 
-class DocumentContext(NamedTuple):
-    """The content of a document beside its scene: the command, warnings so far, tolerances [SI]."""
+class Page(NamedTuple):
+    """A report to be written: its file, .html or .md, and its content beside the scene.
 
+    command     the call that makes it
+    tolerances  input -> half its range; in SI units once it is checked
+    """
+
+    path: Path
     command: str
-    warnings: tuple[str, ...] = ()
-    tolerances: Mapping[str, float] = MappingProxyType({})
+    tolerances: Mapping[str, Any] = MappingProxyType({})
     fluctuation: float = 0.03
+    overwrite: bool = False
+    warnings: tuple[str, ...] = ()
 
 
-def require_drawing() -> None:
-    """Fail early where what draws the pictures, or labels the values, is not installed."""
-    for module in ("matplotlib.figure", "xarray"):
-        with needed("a report"):
-            import_module(module)
-
-
-def document_of(content: Content, run: Run, units: UnitSystem, asked: DocumentContext) -> Document:
+def document_of(content: Content, run: Run, units: UnitSystem, page: Page) -> Document:
     """The document of a scene's results, in these units."""
     with warnings.catch_warnings(record=True) as heard:
         warnings.simplefilter("always")
@@ -54,13 +52,13 @@ def document_of(content: Content, run: Run, units: UnitSystem, asked: DocumentCo
             mechanism(content, units),
             *results(content, shown, units),
             curves(content, shown, units),
-            drive(content, units, asked.fluctuation),
-            spread(content, units, asked.tolerances),
+            drive(content, units, page.fluctuation),
+            spread(content, units, page.tolerances),
         ]
     own = [str(one.message) for one in heard if one.category.__module__.startswith("desaxe.")]
-    told = [*asked.warnings, *own, *statuses(run.dataset), *run.failures]
+    told = [*page.warnings, *own, *statuses(run.dataset), *run.failures]
     known = [section for section in sections if section is not None]
-    return Document(content.title or TITLE, [*known, _warned(told), _origin(asked.command)])
+    return Document(content.title or TITLE, [*known, _warned(told), _origin(page.command)])
 
 
 def _warned(words: list[str]) -> Section:

@@ -117,12 +117,13 @@ def _values(content: Content, dataset: "xr.Dataset") -> list[Block]:
 
 def _few_values(dataset: "xr.Dataset") -> Iterator[TextTable]:
     """A row for each quantity that has one value; a table of a few points."""
-    single = [array for array in dataset.data_vars.values() if not array.ndim]
+    arrays = dataset.data_vars.values()
+    single = [a for a in arrays if not a.ndim and (a.name != "margin" or not dataset.sizes)]
     if single:
         rows = [(str(a.name), cell(float(a)), printed(a.attrs.get("units", "1"))) for a in single]
         yield TextTable(("quantity", "value", "unit"), rows)
     if dataset.sizes and prod(dataset.sizes.values()) <= FEW:
-        heads, *points = table_of(dataset.drop_vars([str(array.name) for array in single]))
+        heads, *points = table_of(dataset.drop_vars([str(a.name) for a in single]))
         yield TextTable(heads, [[cell(v) if isinstance(v, float) else str(v) for v in row] for row in points])
 
 

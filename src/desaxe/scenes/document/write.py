@@ -1,16 +1,41 @@
 """The file of a document, in the form of its suffix."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from importlib import import_module
+from os.path import abspath
 from pathlib import Path
 
+from ...mechanism.quantity_units import UnitSystem
+from ...support.extras import needed
 from ...support.shown import printable
 from ...support.written import require_path, write_whole
+from ..content import Content
+from ..run import Run
 from .blocks import Block, Document, Image, Section, Text
+from .content import Page, document_of
 from .html import html
 from .markdown import markdown
+from .spread import read_tolerances
 
 FORMS: dict[str, Callable[[Document], str]] = {".html": html, ".md": markdown}
 LARGEST, BUDGET = 2_000_000, 1_300_000  # bytes of all, and of pictures, of which text makes a third more
+
+
+def checked(page: Page, content: Content, units: UnitSystem, heard: Iterable[str] = ()) -> Page:
+    """The page of a scene with its tolerances in SI units; an error where it cannot be written or drawn."""
+    for module in ("matplotlib.figure", "xarray"):
+        with needed("a report"):
+            import_module(module)
+    require_document(page.path, page.overwrite)
+    others = [content.data, content.store, *(picture.file for picture in content.pictures)]
+    if abspath(page.path) in [abspath(other) for other in others if other is not None]:
+        raise ValueError(f"report {printable(page.path)}: another result of the scene is written there")
+    return page._replace(tolerances=read_tolerances(content, units, page.tolerances), warnings=tuple(heard))
+
+
+def write_page(page: Page, content: Content, run: Run, units: UnitSystem) -> Path:
+    """Write the report of a scene's results; its path."""
+    return write_document(document_of(content, run, units, page), page.path, page.overwrite)
 
 
 def require_document(path: Path, overwrite: bool) -> None:
