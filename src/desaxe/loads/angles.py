@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import gcd
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from ..mechanism.closed.angles import dead_centres, passages, repeated
 from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.messages import amount
+from ..mechanism.names import sensitivity
 from .function import naming
 from .load import Load, OverTheta, OverY
 from .stroke import OverStroke
@@ -48,6 +50,15 @@ def zero_of(load: OverY, lengths: Sequence[Array], branch: int) -> Array:
         return np.zeros_like(lengths[0])
     (found,) = closed_form(DEAD_CENTRES, (load.centre,), branch=float(branch)).arrays(*lengths)
     return np.broadcast_to(found, lengths[0].shape)
+
+
+def shift(kept: Sequence[str], parameter: str, known: Mapping[str, Any]) -> Any:
+    """By how much a parameter moves the angle at which a quantity, or the difference of two, stays the same.
+
+    known   their derivatives by the parameter, 0 where missing, and that of the first by theta
+    """
+    slope, *centre = (known.get(sensitivity(name, parameter), 0.0) for name in kept)
+    return -(slope - sum(centre)) / known[sensitivity(kept[0], "theta")]
 
 
 def turns_of(caller: str, loads: Mapping[str, Load], most: int) -> int:

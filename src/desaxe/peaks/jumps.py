@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..loads.angles import shift
 from ..mechanism.catalogue import has
 from ..mechanism.names import LENGTHS, sensitivity
 from .course import BESIDE, CONDITION, CROSSING, FIXED, FROM_INNER, FROM_OUTER, TURNING
@@ -155,6 +156,4 @@ def _move(values: ValuesUnderLoads, kind: int, what: int, rows: Rows, theta: Arr
     for place, parameter in enumerate(values.search.parameters):
         if parameter in moved_by:
             with np.errstate(all="ignore"):
-                slope, *centre = (by.get(sensitivity(name, parameter), 0.0) for name in kept)
-                shift = (slope - sum(centre)) / by[sensitivity(kept[0], "theta")]
-                out[2 + place, rows] -= sign * out[1, rows] * shift
+                out[2 + place, rows] += sign * out[1, rows] * shift(kept, parameter, by)

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.names import LENGTHS
+from ..loads.angles import shift
+from ..mechanism.names import LENGTHS, sensitivity
 from .drive import Curve, PositionCurve
 from .events import V
 from .law import state_of
@@ -57,7 +58,7 @@ class Shifts:
             return none  # the guide only changes sides, where it does not press: alpha differs by rounding
         shifts = {curve: self.kink(curve, theta) for curve in shares}
         first = next(iter(shifts))
-        if all((shift == shifts[first]).all() for shift in shifts.values()):
+        if all((one == shifts[first]).all() for one in shifts.values()):
             shares = {first: left - right}  # with what friction makes of it on the other side of the guide
         elif abs(last - right) > least:
             self.notes.append(
@@ -81,12 +82,12 @@ class Shifts:
             last = alpha
         return shares, last
 
-    def passage(self, t: float, omega: float, shift: Array, theta_p: Array) -> Array:
-        """dt/dp where the crank passes an angle that moves by `shift`; NaN where it only touches it."""
+    def passage(self, t: float, omega: float, moved: Array, theta_p: Array) -> Array:
+        """dt/dp where the crank passes an angle that moves by `moved`; NaN where it only touches it."""
         if abs(omega) <= TOUCHED * self.fastest:
             self.notes.append(f"NaN where an angle is only touched, at t = {t:.6g} s")
             return np.full(len(self.wrt), nan)
-        return np.asarray((shift - theta_p) / omega)
+        return np.asarray((moved - theta_p) / omega)
 
     def standstill(self, event: Event, piece: Any, y: Array) -> Array:
         """dt/dp of a standstill on a piece."""
@@ -108,21 +109,18 @@ class Shifts:
 
     def kink(self, curve: Curve, theta: float) -> Array:
         """The shift of a kink of a load by each parameter: one over the slider moves with the lengths."""
-        if not isinstance(curve, PositionCurve):
-            return self.tangents.by_lengths(curve.moves(theta))
-        load = curve.load
-        known = self.tangents.values(load.motion(("theta", *LENGTHS)), theta)
-        numbers = {name: float(value) for name, value in known.items()}
-        along = float(load.moved("theta", numbers))
-        return self.tangents.by_lengths({p: -float(load.moved(p, numbers)) / along for p in LENGTHS})
+        if isinstance(curve, PositionCurve):
+            return self._by_lengths(curve.load.kept, theta)
+        return self.tangents.by_lengths(curve.moves(theta))
 
     def dead_centre(self, event: Event) -> Array:
         """The shift of a dead centre by each parameter: the same in every turn."""
         if event.which not in self.of_centres:
-            self.of_centres[event.which] = self._dead_centre(event.theta)
+            self.of_centres[event.which] = self._by_lengths(("Y_wrt_theta",), event.theta)
         return self.of_centres[event.which]
 
-    def _dead_centre(self, theta: float) -> Array:
-        known = self.tangents.values(("Y_wrt_theta_theta", *(f"Y_wrt_theta_{p}" for p in LENGTHS)), theta)
-        bend = float(known["Y_wrt_theta_theta"])
-        return self.tangents.by_lengths({p: -float(known[f"Y_wrt_theta_{p}"]) / bend for p in LENGTHS})
+    def _by_lengths(self, kept: tuple[str, ...], theta: float) -> Array:
+        """The shift of an angle at which quantities keep their value or difference."""
+        names = [sensitivity(kept[0], "theta"), *(sensitivity(n, p) for n in kept for p in LENGTHS)]
+        known = self.tangents.values(names, theta)
+        return self.tangents.by_lengths({p: float(shift(kept, p, known)) for p in LENGTHS})

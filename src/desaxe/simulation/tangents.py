@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
 from ..mechanism.catalogue import has
-from ..mechanism.names import LENGTHS
+from ..mechanism.names import LENGTHS, sensitivity
 from .drive import Slopes
 from .model import Model
 
@@ -64,18 +64,18 @@ class Tangents:
 
     def _names(self, name: str, *state: str) -> list[str]:
         """A quantity and its derivatives by these variables of the state and by the inputs."""
-        slopes = [_slope(name, p) for p in ("theta", *state, *self.of_design) if p != "mu"]
+        slopes = [sensitivity(name, p) for p in ("theta", *state, *self.of_design) if p != "mu"]
         several = "sliders" in self.inputs  # whose sums have derivatives by every input
         return [name, *(slope for slope in slopes if several or has(slope, True))]
 
     def _rows(self, name: str, known: Mapping[str, Array], by_theta: Array, by_omega: Any = None) -> Array:
         """The derivatives of a quantity, from those of angle and speed."""
-        rows = known[_slope(name, "theta")] * by_theta
+        rows = known[sensitivity(name, "theta")] * by_theta
         if by_omega is not None:
-            rows = rows + known[_slope(name, "omega")] * by_omega
+            rows = rows + known[sensitivity(name, "omega")] * by_omega
         for k, p in enumerate(self.wrt, 2):
             if p in self.of_design and p != "mu":
-                rows[k] += known.get(_slope(name, p), 0.0)
+                rows[k] += known.get(sensitivity(name, p), 0.0)
         return rows
 
     def angles(self, q: Any) -> tuple[Array, Array, Array]:
@@ -164,8 +164,3 @@ class _State(NamedTuple):
     omega: Array
     by_theta: Array
     by_omega: Array
-
-
-def _slope(name: str, parameter: str) -> str:
-    """The name of a derivative; of a derivative the second one."""
-    return f"{name}_{parameter}" if "_wrt_" in name else f"{name}_wrt_{parameter}"

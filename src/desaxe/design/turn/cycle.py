@@ -16,7 +16,7 @@ import numpy as np
 
 from ...definitions.conditions import conditions_of
 from ...evaluation.evaluate import evaluate
-from ...loads.angles import crossings, meeting_angles
+from ...loads.angles import crossings, meeting_angles, shift
 from ...loads.load import Load, OverY
 from ...mechanism.catalogue import has
 from ...mechanism.closed.angles import dead_centres, repeated
@@ -115,8 +115,8 @@ class Cycle:
             if not row.size:
                 continue
             free[row, k] = False
-            for p, shift in self._shifts(names, kept, row, angles[row, k]).items():
-                moves.setdefault(p, np.zeros(angles.shape))[row, k] = shift
+            for p, by in self._shifts(names, kept, row, angles[row, k]).items():
+                moves.setdefault(p, np.zeros(angles.shape))[row, k] = by
         return moves
 
     def _shifts(
@@ -132,10 +132,9 @@ class Cycle:
             slopes = {p: both for p, both in slopes.items() if all(has(name, state) for name in both)}
             by = Cycle.values(self, [along, *(name for both in slopes.values() for name in both)], theta, row)
         shifts = {}
-        for p, (first, *centre) in slopes.items():
-            slope = by[first] - sum(by[name] for name in centre)
+        for p in slopes:
             with np.errstate(invalid="ignore", divide="ignore"):
-                shifts[p] = np.where(by[along] == 0.0, 0.0, -slope / by[along])
+                shifts[p] = np.where(by[along] == 0.0, 0.0, shift(kept, p, by))
         return shifts
 
     def edges(self, names: Sequence[str], motion: Motion | None = None, **other: Any) -> Array:
