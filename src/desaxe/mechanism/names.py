@@ -40,6 +40,7 @@ INTERNAL = (
 CENTRES = ("r_crank", "r_rod")  # half of AB and of BC where they are not given
 # The order in which parameters stand in a name; omega, of a given state, stands in omega0's place.
 ORDER = ("theta", "ec", "AB", "BC", "omega0", "omega", "alpha", *LOADS)
+RANK = {name: place for place, name in enumerate(ORDER)}
 _JOINT = "_wrt_"
 
 
@@ -59,9 +60,9 @@ def parts(name: str) -> tuple[str, tuple[str, ...]]:
 
 
 def sensitivity(name: str, *parameters: str) -> str:
-    """The name of the derivative of a name by more parameters, in their order."""
+    """The name of the derivative of a name by more parameters, in their order; unknown ones last."""
     base, before = parts(name)
-    return joined(base, sorted((*before, *parameters), key=ORDER.index))
+    return joined(base, sorted((*before, *parameters), key=lambda p: RANK.get(p, len(ORDER))))
 
 
 def joined(base: str, parameters: Iterable[str]) -> str:
