@@ -14,7 +14,11 @@ KINDS = {
     "`over_theta`": dx.over_theta([0.0, 2.0, 4.0], [0.0, -50.0, 0.0]),
     "`over_Y`": dx.over_Y([0.15, 0.2, 0.25], [0.0, -50.0, -50.0], [0.0, 0.0, 0.0]),
     "`over_stroke`": dx.over_stroke([0.0, 0.01, 0.02], [-50.0, -50.0, 0.0], dead_centre="outer"),
+    "`spring`, `damper`, `over_V`, sums": dx.spring(400.0, free=0.2)
+    + dx.damper(20.0)
+    + dx.over_V([-1, 1], [9, -9]),
     "function of theta": lambda theta: 2.0 * np.sin(theta),
+    "function of Y, V_C": lambda Y, V_C: -400.0 * (Y - 0.2) - 20.0 * V_C,
 }
 MOTOR = dx.kloss(20.0, 0.2, 40.0)
 ROUGH = {**DESIGN, "ec": dx.plus_minus(0.01, 1e-4)}

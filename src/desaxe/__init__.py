@@ -17,9 +17,12 @@ if TYPE_CHECKING:
     from .definitions.define import define as define
     from .definitions.define import undefine as undefine
     from .loads import LoadWarning as LoadWarning
+    from .loads import damper as damper
     from .loads import over_stroke as over_stroke
     from .loads import over_theta as over_theta
+    from .loads import over_V as over_V
     from .loads import over_Y as over_Y
+    from .loads import spring as spring
     from .loads.motors import kloss as kloss
     from .loads.motors import over_omega as over_omega
     from .machine import Machine as Machine
@@ -135,6 +138,9 @@ PUBLIC = {
     "over_theta": "desaxe.loads",
     "over_Y": "desaxe.loads",
     "over_stroke": "desaxe.loads",
+    "over_V": "desaxe.loads",
+    "spring": "desaxe.loads",
+    "damper": "desaxe.loads",
     "LoadWarning": "desaxe.loads",
     "define": "desaxe.definitions.define",
     "undefine": "desaxe.definitions.define",
@@ -158,6 +164,7 @@ __all__ = [
     "between",
     "compile",
     "counterweight",
+    "damper",
     "define",
     "design_map",
     "drive",
@@ -175,6 +182,7 @@ __all__ = [
     "inverse",
     "kloss",
     "optimize",
+    "over_V",
     "over_Y",
     "over_omega",
     "over_stroke",

@@ -1,7 +1,8 @@
 """Every public call under every kind of load: the truth of pieces of forces, or a refusal that says what can.
 
-One table: each call x (number, over_theta, over_Y, over_stroke, function) x (smooth, kinked, jumping), each
-on random machines, forwards and backwards, on both branches.
+One table: each call x (number, over_theta, over_Y, over_stroke, function) x (smooth, kinked, jumping), and
+each call x (spring, damper, over_V, functions of Y and V_C, sums), on random machines, forwards and
+backwards, on both branches.
 """
 
 import random
@@ -12,15 +13,18 @@ from mpmath import mp, mpf
 from scipy.integrate import solve_ivp
 
 import desaxe as dx
+from desaxe.loads.along_motion import OfMotion
 from desaxe.loads.function import FunctionOverTheta
 from tests.compiler.languages.tools import imported
 from tests.effort import cases
-from tests.loads.truth import DIGITS, LENGTHS, PLACES, SHAPES, TURN, Truth, drawn, given, slider
+from tests.loads.truth import DIGITS, FOLLOWING, LENGTHS, PLACES, SHAPES, TURN, Truth, drawn, given, slider
 
 LOADS = [("number", "smooth"), *((place, shape) for place in PLACES for shape in SHAPES)]
+LOADS += [(place, "moving") for place in FOLLOWING]
 # Calls that compile or search: default and thorough runs take some of these loads, or the first one where
 # that takes seconds, and DESAXE_THOROUGH=all the whole table.
 SOME = [("over_stroke", "jumping"), ("over_theta", "smooth"), ("over_Y", "kinked"), ("function", "jumping")]
+SOME += [("sum", "moving")]
 FAST = {"rel": 1e-11, "abs": 1e-10}  # values at a point
 SUMS = {"rel": 1e-9, "abs": 1e-9}
 
@@ -224,6 +228,9 @@ def simulate(truth, draw, folder):
     way = np.sign(truth.design["omega0"])
     inputs = without(given(truth), "omega0") | {"I_crank": 0.05, "theta0": 0.4}
     torque, speeds = 3.0 * way, 60.0 * way * np.array([1.0, 1.2])
+    if truth.force.place in FOLLOWING:
+        motion_by_scipy(truth, inputs, torque, speeds)
+        return
     one = dx.simulate(torque=torque, t_end=0.3, omega_start=speeds[0], **inputs)
     several = dx.simulate(torque=torque, t_end=0.3, omega_start=speeds, **inputs)
     runs = [(one["theta"], one["omega"], speeds[0])]
@@ -238,6 +245,24 @@ def simulate(truth, draw, folder):
         assert energy(truth, 0.05, theta, omega) == pytest.approx(right, rel=1e-7)
 
 
+def motion_by_scipy(truth, inputs, torque, speeds):
+    m = truth.design["m_slider"]
+
+    def rate(t, state):
+        theta, omega = state
+        _, slope, bend = slider(theta, truth.design, truth.branch)
+        push = torque + truth.load(theta, omega=omega) * slope - m * slope * bend * omega**2
+        return omega, push / (0.05 + m * slope**2)
+
+    several = dx.simulate(torque=torque, t_end=0.3, omega_start=speeds, **inputs)
+    for row, start in enumerate(speeds):
+        one = dx.simulate(torque=torque, t_end=0.3, omega_start=start, **inputs)
+        right = solve_ivp(rate, (0.0, 0.3), (0.4, start), method="DOP853", rtol=1e-11, atol=1e-11).y[:, -1]
+        for found in (one["theta"], several["theta"][row]):
+            assert found[-1] == pytest.approx(right[0], rel=1e-7)
+        assert one["omega"][-1] == pytest.approx(right[1], rel=1e-6, abs=1e-5)
+
+
 def steady(truth, draw, folder):
     """After a turn of its own equation of motion it is as fast as at its beginning."""
     truth = truth._replace(design={**truth.design, "omega0": abs(truth.design["omega0"])})
@@ -250,7 +275,7 @@ def steady(truth, draw, folder):
         def rate(theta, state, piece=piece):
             _, slope, bend = slider(theta, truth.design, truth.branch)
             m, omega = truth.design["m_slider"], state[0]
-            drive = 120.0 - 1.5 * omega + truth.load(theta, piece) * slope
+            drive = 120.0 - 1.5 * omega + truth.load(theta, piece, omega) * slope
             return [(drive - m * slope * bend * omega**2) / (0.2 + m * slope**2) / omega]
 
         solved = solve_ivp(rate, (a, b), [speed], method="DOP853", rtol=1e-11, atol=1e-11)
@@ -263,7 +288,7 @@ def steady(truth, draw, folder):
 
 
 def is_function(truth):
-    return isinstance(truth.force.load, FunctionOverTheta)
+    return isinstance(truth.force.load, (FunctionOverTheta, OfMotion))
 
 
 def machine_and_its_files(truth, draw, folder):
@@ -275,7 +300,7 @@ def machine_and_its_files(truth, draw, folder):
     assert machine.peak("T_in")["value"] == pytest.approx(truth.largest(), rel=1e-9)
     machine.report(folder / "report.html")
     if is_function(truth):
-        with pytest.raises(TypeError, match=r"F_Y: .*function"):
+        with pytest.raises(TypeError, match=r"F_Y: .* cannot stand in a scene file"):
             machine.to_scene(folder / "press.toml")
         return
     machine.to_scene(folder / "press.toml")

@@ -148,7 +148,7 @@ def test_functions_of_numbers_and_without_derivative():
     with pytest.raises(ValueError, match="T_in_wrt_theta: it needs the slope of F_Y"):
         dx.evaluate("T_in_wrt_theta", theta=1.0, F_Y=lambda theta: 2.0 * np.sin(theta), **fixed)
     with pytest.raises(
-        TypeError, match="F_Y: a function of t, omega is not served by this call, which passes theta"
+        TypeError, match="F_Y: a function of t is not served by this call, which passes theta, omega, Y"
     ):
         dx.evaluate("T_in", theta=1.0, F_Y=lambda t, theta, omega: 0.0, **fixed)
     with pytest.raises(ValueError, match="F_Y: the function gave nan at theta = 1"):

@@ -16,6 +16,23 @@ from scipy.optimize import brentq, minimize_scalar
 import desaxe as dx
 
 PLACES, SHAPES = ("over_theta", "over_Y", "over_stroke", "function"), ("smooth", "kinked", "jumping")
+# Loads over columns of the motion: how each is made, and the force by Y, V_C and the crank angle.
+FOLLOWING = {
+    "spring": lambda p: (dx.spring(p[0], free=p[1]), lambda Y, V, t: -p[0] * (Y - p[1])),
+    "damper": lambda p: (
+        dx.damper(linear=p[2], quadratic=p[3]), lambda Y, V, t: -(p[2] + p[3] * abs(V)) * V
+    ),
+    "over_V": lambda p: (dx.over_V([-p[4], 0, p[4]], [p[5], 0, -p[6]]), lambda Y, V, t: _bent(V, *p[4:])),
+    "function of Y, V_C": lambda p: (
+        dx.over_Y(lambda Y: -p[0] * Y**3, lambda Y: -3 * p[0] * Y**2)
+        + dx.over_V(lambda V: -p[3] * V**3, derivative=lambda V: -3 * p[3] * V**2),
+        lambda Y, V, t: -p[0] * Y**3 - p[3] * V**3,
+    ),
+    "sum": lambda p: (
+        2 * dx.spring(p[0], free=p[1]) - dx.over_theta(*_wave(p[5]), kind="linear") + dx.damper(p[2]) + 7,
+        lambda Y, V, t: -2 * p[0] * (Y - p[1]) - _saw(t, p[5]) - p[2] * V + 7,
+    ),
+}  # fmt: skip
 LENGTHS, TURN, DIGITS = ("ec", "AB", "BC"), 2.0 * np.pi, 60
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(20)
 
@@ -76,6 +93,10 @@ def around(x: Any, y: Any, shape: str) -> Pieces:
 
 def force_of(place: str, shape: str, design: dict, branch: int, draw: Any) -> Force:
     """A random force of a kind for a design."""
+    if place in FOLLOWING:
+        numbers = [draw.uniform(*ends) for ends in ((1e3, 4e3), (0, 0.2), (5, 90), (2, 9), (0.2, 0.6))]
+        load, by = FOLLOWING[place]([*numbers, draw.uniform(50, 300), draw.uniform(50, 300)])
+        return Force(place, by, by, load)
     values = [draw.uniform(-900.0, 300.0) for _ in range(5)]
     if place == "number":
         return constant(values[0])
@@ -107,6 +128,28 @@ def force_of(place: str, shape: str, design: dict, branch: int, draw: Any) -> Fo
 def _function(table: Any, nodes: list) -> Any:
     """A Python function of theta that is the table."""
     return dx.over_theta(lambda t: table.both(t)[0], lambda t: table.both(t)[1], nodes=nodes)
+
+
+def _bent(V: Any, most: Any, inward: Any, outward: Any) -> Any:
+    """A line for each way of the slider, held beyond its end."""
+    share = V / most
+    share = np.clip(share, -1.0, 1.0) if isinstance(V, np.ndarray) else max(min(share, 1), -1)
+    return -share * (outward * (share > 0) + inward * (share < 0))
+
+
+def _wave(size: float) -> tuple[list[float], list[float]]:
+    """Points of a saw tooth over a turn."""
+    return [0.0, 2.0, 5.0], [0.0, size, -size]
+
+
+def _saw(theta: Any, size: Any) -> Any:
+    """The saw tooth between its points."""
+    (_, b, c), _ = _wave(size)
+    t = theta - TURN * _lib(theta).floor(theta / TURN)
+    lines = size * t / b, size - 2 * size * (t - b) / (c - b), -size + size * (t - c) / (TURN - c)
+    if isinstance(t, np.ndarray):
+        return np.where(t < b, lines[0], np.where(t < c, lines[1], lines[2]))
+    return lines[0] if t < b else lines[1] if t < c else lines[2]
 
 
 # ---- the mechanism -------------------------------------------------------------------------------------
@@ -156,8 +199,10 @@ class Truth(NamedTuple):
             return Y
         return abs(dead_centre(self.design, self.branch, self.force.dead_centre) - Y)
 
-    def piece(self, theta: float) -> tuple[Pieces, int, Any]:
+    def piece(self, theta: float) -> Any:
         """The piece that holds at an angle inside of an arc, and the whole turns up to there."""
+        if self.force.place in FOLLOWING:
+            return None
         inward = slider(theta, self.design, self.branch)[1] * self.design["omega0"] < 0.0
         pieces, turns = self.force.inward if inward else self.force.outward, self.turns(theta)
         return pieces, pieces.piece(self.place(theta, turns)), turns
@@ -170,8 +215,11 @@ class Truth(NamedTuple):
     def inertia(self, bend: Any) -> Any:
         return self.design["m_slider"] * self.design["omega0"] ** 2 * bend
 
-    def load(self, theta: Any, held: Any = None) -> Any:
-        """The force on the slider."""
+    def load(self, theta: Any, held: Any = None, omega: Any = None) -> Any:
+        """The force on the slider; at another speed than that of the design."""
+        if self.force.place in FOLLOWING:
+            Y, slope, _ = slider(theta, self.design, self.branch)
+            return self.force.outward(Y, slope * (self.design["omega0"] if omega is None else omega), theta)
         pieces, piece, turns = held or self.piece(float(theta))
         return pieces.at(self.place(theta, turns), piece)
 
@@ -200,6 +248,9 @@ class Truth(NamedTuple):
         spans = sorted({*self._repeated([sines[0], np.pi - sines[0], sines[1], np.pi - sines[1]], low, high)})
         turning = [a for a in spans if abs(slider(a, self.design, self.branch)[1]) < 1e-9 * AB]
         edges = {low, high, *turning}
+        if self.force.place in FOLLOWING:
+            edges |= {*self._repeated(_wave(1.0)[0], low, high)}
+            edges |= self._at_speeds(getattr(self.force.load, "speeds", ()), low, high)
         if self.force.place == "theta":
             edges |= {*self._repeated(self.force.outward.knots, low, high)}
         elif self.force.place in ("Y", "stroke"):
@@ -211,6 +262,19 @@ class Truth(NamedTuple):
                         edges.add(brentq(lambda t, x=x: self.place(t, 0) - x, a, b, xtol=1e-15, rtol=1e-15))
         pairs = [(a, b) for a, b in pairwise(sorted(edges)) if b - a > 1e-12]
         return [(a, b, self.piece(0.5 * (a + b))) for a, b in pairs]
+
+    def _at_speeds(self, speeds: Any, low: float, high: float) -> set[float]:
+        """The angles at which the slider has these speeds."""
+
+        def over(theta: Any, speed: float) -> Any:
+            return slider(theta, self.design, self.branch)[1] * self.design["omega0"] - speed
+
+        theta = np.linspace(low, high, 800)
+        return {
+            brentq(over, theta[k], theta[k + 1], (speed,), xtol=1e-15, rtol=1e-15)
+            for speed in speeds
+            for k in np.flatnonzero(np.diff(np.sign(over(theta, speed))))
+        }
 
     def _repeated(self, angles: Any, low: float, high: float) -> list[float]:
         turns = range(int(np.floor(low / TURN)) - 1, int(np.ceil(high / TURN)) + 1)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
+from ..loads.along_motion import SPEEDS
 from ..mechanism.inputs import INPUTS, SAFE, Input, is_good, limit_of
 from ..mechanism.messages import amount, named
 from ..mechanism.read import read_array
@@ -60,7 +61,7 @@ def evaluate_arrays(
     functions: dict[str, Any] = {}
     if loads is not None:
         tables = loads.tables()
-        functions = loads.at(numeric("theta", given["theta"], wanted.shown)) if loads.functions else {}
+        functions = _functions(loads, inputs, given, wanted.shown) if loads.functions else {}
     if (out is None or type(out) is dict) and (loads is None or "theta" in wanted.inputs):
         ready = planned(wanted, {**given, **functions} if functions else given, out, threads, tables)
         if ready is not None:
@@ -74,6 +75,20 @@ def evaluate_arrays(
         scalars, loops = loops_of(arrays | {n: np.asarray(f) for n, f in functions.items()}, shape)
         fill(wanted, {**scalars, **tables}, loops, list(buffers.values()), threads)
     return copied_back(places, buffers, out is None)
+
+
+def _functions(
+    loads: LoadInputs, inputs: Sequence[str], given: Mapping[str, Any], names: Sequence[str]
+) -> dict[str, Any]:
+    """The values of loads that are no tables, and their derivatives."""
+    needed = {"theta", *(SPEEDS if loads.motion is None else inputs)}
+    numbers = {n: numeric(n, given[n], names) for n in needed if given.get(n) is not None}
+    motion = loads.motion
+    if motion is None:
+        return loads.at(numbers)
+    if all(isinstance(number, float) for number in numbers.values()):
+        numbers = {name: np.array(number) for name, number in numbers.items()}
+    return loads.at(numbers, evaluate_arrays(motion, motion.inputs, numbers, 1, None))
 
 
 def loops_of(arrays: Mapping[str, Array], shape: tuple[int, ...]) -> tuple[dict[str, float], Loops]:

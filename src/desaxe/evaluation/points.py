@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..mechanism.own import Definition, using
 from ..runtime.kernels import KernelKey, key_of
 from ..runtime.request import Request
-from .arrays import Loops, copied_back, dtype_of, fill, outputs_for, scratch_for
+from .arrays import Loops, copied_back, dtype_of, evaluate_arrays, fill, outputs_for, scratch_for
 from .axes import Outer, require_inputs
 from .labels import Output, attributes
 from .under_loads.loaded import evaluate_loaded
@@ -94,14 +94,29 @@ class Points(NamedTuple):
         columns = {name: np.ascontiguousarray(values[name]) for name in self.dims if name in self.inputs}
         scalars: dict[str, Any] = dict(self.numbers)
         axes = {name: self.dims.index(name) for name in columns}
+        if self.loads is not None and self.loads.motion is not None:
+            self._of_motion(columns, outs, threads)
+            return
         if self.loads is not None:
             scalars |= self.loads.tables()
-            (columns if "theta" in columns else scalars).update(
-                self.loads.at(columns["theta"] if "theta" in columns else scalars["theta"])
-            )
+            along = columns if "theta" in columns else scalars
+            along.update(self.loads.at({"theta": along["theta"]}))
             axes |= {name: axes["theta"] for name in self.loads.functions if name in columns}
         loops = Loops(tuple(values[name].size for name in self.dims) or (1,), columns, axes)
         fill(self.wanted, scalars, loops, outs, threads, self.key)
+
+    def _of_motion(self, columns: Mapping[str, Array], outs: Sequence[Array], threads: int | None) -> None:
+        """Fill outputs under loads over the motion, whose values vary over all dimensions."""
+        count = len(self.dims)
+        along = {
+            n: column.reshape([-1 if dim == n else 1 for dim in self.dims]) for n, column in columns.items()
+        }
+        given = {**dict(self.numbers), **along}
+        if not count:
+            given["theta"] = np.array(given["theta"])
+        result = evaluate_arrays(self.wanted, self.inputs, given, threads, None, self.loads)
+        for out, values in zip(outs, result.values(), strict=True):
+            out[...] = values
 
 
 def points_of(

@@ -12,18 +12,20 @@ column_files  columns of files and frames by position or name, with the units of
 made       loads made of columns, checked
 maker      public calls that make loads and motors, in SI units or a machine's
 arithmetic  multiples and sums of loads, loads shifted by an angle
+along_motion  loads over columns of the motion: functions, springs, dampers, speeds, sums of loads
+elements   `spring`, `damper`, `over_V`
+units      users' functions in a machine's units
 pressure   pressures on a piston as forces
 tabulated  `over_theta`, `over_Y`, `over_stroke`: loads from lists, files and functions
 motors     a torque over the speed: `over_omega`, `kloss`
 stroke     a load over the distance from a dead centre
-pieces     which piece of a load over Y holds at an angle
-exact      where the slider is, exactly
 lines      a load as lines of a Program
 angles     crank angles of slider positions and dead centres
 resolve    loads as numbers at each point, and total derivatives
 """
 
+from .elements import damper, over_V, spring
 from .load import Load, LoadWarning
 from .tabulated import over_stroke, over_theta, over_Y
 
-__all__ = ["Load", "LoadWarning", "over_Y", "over_stroke", "over_theta"]
+__all__ = ["Load", "LoadWarning", "damper", "over_V", "over_Y", "over_stroke", "over_theta", "spring"]

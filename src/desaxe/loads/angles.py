@@ -13,6 +13,7 @@ from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.messages import amount
 from ..mechanism.names import sensitivity
+from .along_motion import members_of
 from .function import naming
 from .load import Load, OverTheta, OverY
 from .stroke import OverStroke
@@ -44,7 +45,7 @@ def meeting_and_bent(load: OverY, lengths: Sequence[Array], branch: int) -> tupl
     return found, found[:, np.resize(known, found.shape[1])]
 
 
-def zero_of(load: OverY, lengths: Sequence[Array], branch: int) -> Array:
+def zero_of(load: Load, lengths: Sequence[Array], branch: int) -> Array:
     """The position [m] of each design from which a load measures positions; NaN where there is none."""
     if not load.centre:
         return np.zeros_like(lengths[0])
@@ -64,7 +65,7 @@ def shift(kept: Sequence[str], parameter: str, known: Mapping[str, Any]) -> Any:
 def turns_of(caller: str, loads: Mapping[str, Load], most: int) -> int:
     """After how many turns the loads repeat; ValueError for more than `most`."""
     turns = 1
-    for name, load in loads.items():
+    for name, load in ((name, part) for name, whole in loads.items() for part in members_of([whole])):
         if not isinstance(load, OverTheta):
             continue
         own = next((n for n in range(1, most + 1) if _repeats(load, n * TURN)), None)
@@ -85,7 +86,9 @@ def turns_of(caller: str, loads: Mapping[str, Load], most: int) -> int:
 
 def cycle(loads: Mapping[str, Load]) -> float:
     """The angle [rad] after which crank and loads repeat together; the longest period where they do not."""
-    longest = max([TURN, *(load.period for load in loads.values() if isinstance(load, OverTheta))])
+    longest = max(
+        [TURN, *(load.period for load in members_of(loads.values()) if isinstance(load, OverTheta))]
+    )
     try:
         turns = TURN * turns_of("a cycle", loads, MOST_TURNS)
     except ValueError:
@@ -107,7 +110,7 @@ def meeting_angles(
     One row for all designs where no load is over the slider's position.
     """
     found = [np.empty((1, 0))]
-    for load in loads:
+    for load in members_of(loads):
         if isinstance(load, OverTheta):
             found.append(np.array([load.nodes(low, high, smooth=True)]))
         elif isinstance(load, OverY):

@@ -6,7 +6,6 @@ from typing import Any
 
 ARGUMENTS = ("t", "theta", "omega", "Y", "s", "V_C")
 POSITIONED = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
-INSTEAD = {"Y": "; give desaxe.over_Y, a table over it", "s": "; give desaxe.over_stroke, a table over it"}
 
 
 def arguments_of(name: str, function: Callable[..., Any], served: Sequence[str]) -> tuple[str, ...]:
@@ -25,10 +24,9 @@ def arguments_of(name: str, function: Callable[..., Any], served: Sequence[str])
         )
     refused = [argument for argument in needed if argument not in served]
     if refused:
-        instead = INSTEAD.get(refused[0], "") if name != "torque" else ""
         raise TypeError(
             f"{name}: a function of {', '.join(refused)} is not served by this call, which passes "
-            f"{', '.join(served)}{instead}"
+            f"{', '.join(served)}"
         )
     return needed
 
@@ -41,6 +39,18 @@ def by_position(function: Callable[..., Any]) -> Callable[..., Any]:
         return function
     first = len(needed) - len(named)
     return lambda *values: function(*values[:first], **dict(zip(named, values[first:], strict=True)))
+
+
+def of_one(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    """A function of one argument, whatever its name; TypeError for one of several."""
+    try:
+        needed = required(name, function)
+    except TypeError:  # np.sin and others do not say
+        return function
+    if len(needed) > 1:
+        told = getattr(function, "__name__", type(function).__name__)
+        raise TypeError(f"{name}: a function of one argument is expected, but {told} has {', '.join(needed)}")
+    return by_position(function) if needed else function
 
 
 def required(name: str, function: Callable[..., Any]) -> tuple[str, ...]:

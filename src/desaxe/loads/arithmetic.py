@@ -1,4 +1,4 @@
-"""Arithmetic of loads: multiples, sums of loads over the same thing, loads shifted by an angle.
+"""Arithmetic of loads: multiples, sums, loads shifted by an angle.
 
 A result may be a load of another class than its parts: the operators stand above all classes of loads, and
 are attached to them here.
@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 from ..mechanism.inputs import INPUTS
 from ..mechanism.read import read
 from ..support.shown import shown
+from .along_motion import SumOfLoads
 from .function import FunctionOverTheta
 from .load import Load, OverTheta, OverY, TableOverTheta
 from .table import Row, Table, polynomial
@@ -28,12 +29,13 @@ class Combined:
     """A sum of multiples of functions of the crank angle, each of an angle of its own."""
 
     parts: tuple[tuple[float, Callable[[Any], Any], float], ...]  # factor, function, angle that it lags
+    constant: float = 0.0
 
     __name__ = "a sum"
 
     def __call__(self, theta: Any) -> Any:
         """The sum at crank angles [rad]."""
-        return sum(factor * function(theta - lag) for factor, function, lag in self.parts)
+        return sum((factor * function(theta - lag) for factor, function, lag in self.parts), self.constant)
 
 
 def multiple(load: Load, factor: Any) -> Any:
@@ -48,11 +50,16 @@ def multiple(load: Load, factor: Any) -> Any:
     if isinstance(load, OverY):
         inward = None if load.inward is None else _scaled(load.inward, factor)
         return _like(load, replace(load, outward=_scaled(load.outward, factor), inward=inward))
-    return _function(load, ((factor, load, 0.0),))
+    if isinstance(load, OverTheta):
+        return _function(load, ((factor, load, 0.0),))
+    terms, constant = _terms(load)
+    return _like(load, SumOfLoads(tuple((factor * f, part) for f, part in terms), factor * constant))
 
 
 def total(one: Load, other: Any) -> Any:
-    """The sum of two loads over the same thing."""
+    """The sum of two loads, or of a load and a number; over the same thing where it is of their kind."""
+    if isinstance(other, Real) and not isinstance(other, bool):
+        return _raised(one, _in_si(one, float(other)))
     if not isinstance(other, Load):
         return NotImplemented
     if one.unit is not None and other.unit is not None and one.unit != other.unit:
@@ -64,10 +71,41 @@ def total(one: Load, other: Any) -> Any:
     if isinstance(one, OverTheta) and isinstance(other, OverTheta):
         return _function(one, ((1.0, one, 0.0), (1.0, other, 0.0)))
     if type(one) is type(other) and isinstance(one, OverY) and isinstance(other, OverY):
-        return _sum_over_Y(one, other)
-    raise TypeError(
-        f"{one!r} + {other!r}: loads over the same thing add up; give a function of theta, Y, V_C for others"
-    )
+        both = _sum_over_Y(one, other)
+        if both is not None:
+            return both
+    (terms, constant), (others, more) = _terms(one), _terms(other)
+    return _like(one, SumOfLoads((*terms, *others), constant + more))
+
+
+def _terms(load: Load) -> tuple[tuple[tuple[float, Load], ...], float]:
+    """A load as multiples of loads, and a number."""
+    return (load.terms, load.constant) if isinstance(load, SumOfLoads) else (((1.0, load),), 0.0)
+
+
+def _raised(load: Load, number: float) -> Load:
+    """A load and a number."""
+
+    def raised(table: Table) -> Table:
+        return replace(table, rows=tuple((row[0] + number, *row[1:]) for row in table.rows))
+
+    if isinstance(load, TableOverTheta):
+        return _like(load, replace(load, table=raised(load.table)))
+    if isinstance(load, OverY):
+        inward = None if load.inward is None else raised(load.inward)
+        return _like(load, replace(load, outward=raised(load.outward), inward=inward))
+    if isinstance(load, OverTheta):
+        return _function(load, ((1.0, load, 0.0),), constant=number)
+    terms, constant = _terms(load)
+    return _like(load, SumOfLoads(terms, constant + number))
+
+
+def _in_si(load: Load, number: float) -> float:
+    """A number that is added to a load, in SI units from those of its machine."""
+    if not isfinite(number):
+        raise ValueError(f"a load + {shown(number)}: the number must be finite")
+    units = load.shown_in
+    return float(number) if units is None else float(load.values_in(units).to_si(number))
 
 
 def shifted(load: OverTheta, angle: Any) -> OverTheta:
@@ -90,12 +128,12 @@ def _like(load: Load, new: T) -> T:
     return new
 
 
-def _function(load: Any, parts: Any, lag: float = 0.0) -> FunctionOverTheta:
+def _function(load: Any, parts: Any, lag: float = 0.0, constant: float = 0.0) -> FunctionOverTheta:
     """A combination of loads over theta as one function, with the nodes of all of them."""
     loads = [part for _, part, _ in parts]
     period = _common([part.period for part in loads])
     nodes = {(node + lag) % period for part in loads for node in part.nodes(0.0, period, False)}
-    values = Combined(tuple((factor, part.value, at) for factor, part, at in parts))
+    values = Combined(tuple((factor, part.value, at) for factor, part, at in parts), constant)
     slopes = None
     if all(part.has_slope for part in loads):
         slopes = Combined(tuple((factor, Slope(part), at) for factor, part, at in parts))
@@ -130,19 +168,17 @@ def _scaled(table: Table, factor: float) -> Table:
     return Table(table.knots, tuple(rows), table.period)
 
 
-def _sum_over_Y(one: OverY, other: OverY) -> OverY:
-    """The sum of two loads over the slider's position, or over the distance from the same dead centre."""
+def _sum_over_Y(one: OverY, other: OverY) -> OverY | None:
+    """The sum of two tables over position, or over distance from one dead centre; None where it is none."""
     if one.centre != other.centre:
-        raise TypeError(f"{one!r} + {other!r}: they are over distances from different dead centres")
+        return None
     ways = [(one.outward, other.outward)]
     if one.inward is not None or other.inward is not None:
         ways.append((one.inward or one.outward, other.inward or other.outward))
     sums = [_sum(a, b, one.kind if one.kind == other.kind else "") for a, b in ways]
     tables = [table for table in sums if table is not None]
     if len(tables) < len(ways):
-        raise TypeError(
-            f"{one!r} + {other!r}: tables over other positions add up if both are linear or both step"
-        )
+        return None
     inward = tables[1] if len(tables) > 1 else None
     return _like(one, replace(one, outward=tables[0], inward=inward))
 
@@ -198,10 +234,14 @@ def attach_operators() -> None:
         "__mul__": multiple,
         "__rmul__": multiple,
         "__add__": total,
+        "__radd__": total,
         "__neg__": lambda load: multiple(load, -1.0),
         "__sub__": lambda one, other: (
-            total(one, multiple(other, -1.0)) if isinstance(other, Load) else NotImplemented
+            total(one, multiple(other, -1.0) if isinstance(other, Load) else -other)
+            if isinstance(other, (Load, Real))
+            else NotImplemented
         ),
+        "__rsub__": lambda one, other: total(multiple(one, -1.0), other),
     }
     for name, operator in operators.items():
         setattr(Load, name, operator)

@@ -1,13 +1,13 @@
 """A user's function of the crank angle as a load."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from math import isfinite
+from math import isfinite, nan
 from typing import Any
 
 from ..mechanism.closed import TURN
-from ..mechanism.messages import message_of, named
+from ..mechanism.messages import Message, listed, message_of, named
 from ..support.computed import computed_once
 from ..support.forks import IMPORTS
 from .load import OverTheta
@@ -45,7 +45,7 @@ class FunctionOverTheta(OverTheta):
 
         angles = self.every * ((np.arange(PROBES) + 0.25) * GOLDEN % 1.0)
         shifted = angles + self.every * np.array([[0.0], [-1.0], [1.0]])
-        values = called(self.function, shifted.ravel(), "the load").reshape(shifted.shape)
+        values = called(self.function, {"theta": shifted.ravel()}, "the load").reshape(shifted.shape)
         return bool(np.ptp(values, axis=0).max() <= REPEATED * np.abs(values).max())
 
     @property
@@ -55,8 +55,10 @@ class FunctionOverTheta(OverTheta):
 
     def both(self, theta: Any) -> tuple[Any, Any]:
         """The load and, where it is known, its derivative."""
-        slope = None if self.derivative is None else called(self.derivative, theta, "the load's derivative")
-        return called(self.function, theta, "the load"), slope
+        at, slope = {"theta": theta}, None
+        if self.derivative is not None:
+            slope = called(self.derivative, at, "the load's derivative")
+        return called(self.function, at, "the load"), slope
 
     def nodes(self, low: float, high: float, smooth: bool) -> list[float]:
         """The nodes in a range, one at a jump moved by what is rounded to the first angle after it."""
@@ -69,7 +71,7 @@ class FunctionOverTheta(OverTheta):
 
         nodes = np.array(angles)[:, None]
         near = nodes + np.spacing(np.abs(nodes)) * np.arange(-ROUNDED, ROUNDED + 1)
-        values = called(self.function, near, "the load")
+        values = called(self.function, {"theta": near}, "the load")
         change = np.abs(np.diff(values, axis=1))
         at = np.arange(len(angles)), change.argmax(axis=1)
         jumps = change[at] > SAME * np.abs(values).max(axis=1)
@@ -86,46 +88,64 @@ class FunctionOverTheta(OverTheta):
         return f"<load over theta: the function {name}>"
 
 
-def called(function: Callable[[Any], Any], theta: Any, what: str) -> Any:
-    """Call a user's function with a number or an array; angle by angle if it takes no arrays."""
-    if isinstance(theta, float):
-        return _one(function, theta, what)
+def called(function: Callable[..., Any], columns: Mapping[str, Any], what: str) -> Any:
+    """Call a user's function with numbers or arrays, by position; point by point if it takes no arrays.
+
+    columns  of its arguments, in its order, by their names; where one is not finite the value is NaN
+    """
+    if all(isinstance(column, float) for column in columns.values()):
+        return _one(function, columns, what)
     with IMPORTS:
         import numpy as np
 
-    theta = np.asarray(theta, float)
+    arrays = np.broadcast_arrays(*(np.asarray(column, float) for column in columns.values()))
+    good, shape = np.logical_and.reduce([np.isfinite(array) for array in arrays]), arrays[0].shape
+    passed = [*arrays] if good.all() else [array[good] for array in arrays]
     try:
-        found = np.asarray(function(theta))
+        result = np.asarray(function(*passed))
     except Exception:  # math.sin, or a condition: it takes numbers only; what it says of a number counts
-        found = np.array([_one(function, x, what) for x in theta.reshape(-1).tolist()]).reshape(theta.shape)
-    if found.dtype.kind not in "fiub" or found.shape not in ((), theta.shape):
+        rows = zip(*(array.reshape(-1).tolist() for array in passed), strict=True)
+        points = [_one(function, dict(zip(columns, row, strict=True)), what) for row in rows]
+        result = np.array(points).reshape(passed[0].shape)
+    if result.dtype.kind not in "fiub" or result.shape not in ((), passed[0].shape):
+        places = "angles" if tuple(columns) == ("theta",) else "points"
         raise ValueError(
-            f"{what}: a function of {theta.size} angles gave the shape {found.shape} of {found.dtype}; "
-            f"expected numbers of the shape {theta.shape}"
+            f"{what}: a function of {passed[0].size} {places} gave the shape {result.shape} of "
+            f"{result.dtype}; expected numbers of the shape {passed[0].shape}"
         )
-    found = np.broadcast_to(found.astype(float), theta.shape)
-    bad = np.isfinite(theta) & ~np.isfinite(found)
+    result = np.broadcast_to(result.astype(float), passed[0].shape)
+    bad = ~np.isfinite(result)
     if bad.any():
-        where = named("theta", theta[bad].flat[0], "g")
-        value = f"{what}: the function gave {found[bad].flat[0]} at " + where
+        where = listed([named(n, x[bad].flat[0], "g") for n, x in zip(columns, passed, strict=True)])
+        value = f"{what}: the function gave {result[bad].flat[0]} at " + where
         raise ValueError(value + ": it must be finite")
-    return found
+    if good.all():
+        return result
+    whole = np.full(shape, np.nan)
+    whole[good] = result
+    return whole
 
 
-def _one(function: Callable[[Any], Any], theta: float, what: str) -> float:
+def _one(function: Callable[..., Any], columns: Mapping[str, float], what: str) -> float:
+    if not all(map(isfinite, columns.values())):
+        return nan
+
+    def where() -> Message:
+        return listed([named(name, value, "g") for name, value in columns.items()])
+
     try:
-        found = function(theta)
+        result = function(*columns.values())
     except Exception as error:
-        failed = f"{what}: the function failed at " + named("theta", theta, "g")
+        failed = f"{what}: the function failed at " + where()
         raise ValueError(failed + f": {type(error).__name__}: " + message_of(error)) from error
     try:
-        number = float(found)
+        number = float(result)
     except (TypeError, ValueError):
-        where = named("theta", theta, "g")
-        raise TypeError(f"{what}: the function gave {found!r} at " + where + ": expected a number") from None
-    if isfinite(theta) and not isfinite(number):
-        where = named("theta", theta, "g")
-        raise ValueError(f"{what}: the function gave {number} at " + where + ": it must be finite")
+        raise TypeError(
+            f"{what}: the function gave {result!r} at " + where() + ": expected a number"
+        ) from None
+    if not isfinite(number):
+        raise ValueError(f"{what}: the function gave {number} at " + where() + ": it must be finite")
     return number
 
 

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
 from math import ceil, floor, inf, nan
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from ..mechanism.closed import TURN
@@ -44,6 +45,7 @@ class Load(ABC):
     unit: str | None = None
     __call__: Callable[..., Any]  # the load at angles, or at positions and ways
     plain: tuple[str, ...] = ()
+    numbers: Mapping[str, float] = MappingProxyType({})  # of a spring or damper: motions differ by them
     shown_in: "UnitSystem | None" = None  # of the machine that made it, in which it is called and shown
 
     @property

@@ -10,6 +10,7 @@ from warnings import warn
 from ..mechanism.messages import amount
 from ..mechanism.quantity_units import SI, UnitSystem
 from ..support.shown import shown
+from .along_motion import OverSpeed
 from .columns import Column
 from .load import Load, LoadWarning, OverY, TableOverTheta
 from .stroke import DEAD_CENTRES, OverStroke
@@ -17,6 +18,7 @@ from .table import KINDS, Table, held, periodic
 
 CLOSED = 1e-6  # of a period: a last angle so near to its end repeats the first one
 WIDE = 4.0  # times the usual distance between points
+SMOOTH = ("linear", "smooth")  # kinds of a table over a speed, which has no jumps
 EQUAL = 1e-9  # of the largest value: what differs by less is the same
 
 
@@ -89,19 +91,53 @@ def table_over_Y(positions: Column, ways: Sequence[Column], kind: str) -> Load:
 
 def table_over_stroke(distances: Column, ways: Sequence[Column], kind: str, dead_centre: Any) -> Load:
     """A load over the distance from a dead centre; ValueError where the columns are no table."""
-    if dead_centre is None:
-        both = " or ".join(f'dead_centre="{which}"' for which in DEAD_CENTRES)
-        raise TypeError(f"over_stroke: dead_centre is missing: {both}, from which distances are measured")
-    if not isinstance(dead_centre, str) or dead_centre not in DEAD_CENTRES:
-        raise ValueError(
-            f"over_stroke: dead_centre = {shown(dead_centre)}: it is one of {', '.join(DEAD_CENTRES)}"
-        )
+    dead_centre = dead_centre_of(dead_centre)
     wrong = next((x for x in distances.values if x < 0.0), None)
     if wrong is not None:
         distance = amount("Y", wrong, "g", says_unit=True)
         raise ValueError("over_stroke: the distance " + distance + " is below 0: distances have no sign")
     outward, inward = _both_ways("over_stroke", "distances", distances, ways, kind)
     return OverStroke(outward, inward, kind, *_given("Y", distances, ways), dead_centre)
+
+
+def dead_centre_of(name: Any) -> str:
+    """The name of a dead centre, checked."""
+    if name is None:
+        both = " or ".join(f'dead_centre="{which}"' for which in DEAD_CENTRES)
+        raise TypeError(f"over_stroke: dead_centre is missing: {both}, from which distances are measured")
+    if not isinstance(name, str) or name not in DEAD_CENTRES:
+        raise ValueError(f"over_stroke: dead_centre = {shown(name)}: it is one of {', '.join(DEAD_CENTRES)}")
+    return name
+
+
+def table_over_V(speeds: Column, forces: Column, kind: str) -> Load:
+    """A load over the slider's speed; ValueError where the columns are no table."""
+    table = ascending_table("over_V", "V_C", ("speeds", "forces"), (speeds, forces), kind)
+    return OverSpeed(table, kind, forces.unit, ("V_C",) * speeds.plain + ("value",) * forces.plain)
+
+
+def ascending_table(
+    name: str, quantity: str, columns: tuple[str, str], both: tuple[Column, Column], kind: str
+) -> Table:
+    """A table over ascending speeds; ValueError where the columns are none.
+
+    quantity, columns  what a message calls a speed, and both columns
+    """
+    (x, y), (xs, ys) = both, columns
+    if not isinstance(kind, str) or kind not in SMOOTH:
+        raise ValueError(f"{name}: kind = {shown(kind)}: it is one of {', '.join(SMOOTH)}")
+    if len(x.values) != len(y.values):
+        raise ValueError(f"{name}: {len(x.values)} {xs} and {len(y.values)} {ys}; expected as many of both")
+    if len(x.values) < 2:
+        raise ValueError(f"{name}: {len(x.values)} of the {xs}; expected at least two points")
+    for before, after in pairwise(x.values):
+        if not before < after:
+            one, other = (amount(quantity, value, "g") for value in (before, after))
+            raise ValueError(f"{name}: the {xs} must ascend, but " + other + " follows " + one)
+    table = held(x.values, y.values, kind)
+    if not all(map(isfinite, chain.from_iterable(table.rows))):
+        raise ValueError(f"{name}: two {xs} are too close for the {ys} there")
+    return table
 
 
 def _given(place: str, x: Column, ways: Sequence[Column]) -> tuple[str | None, tuple[str, ...]]:

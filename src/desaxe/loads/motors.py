@@ -15,11 +15,11 @@ from ..mechanism.read import read_array
 from ..mechanism.slips import warn_of_slips
 from ..support.shown import shown
 from .columns import Column, column_of
+from .made import ascending_table
 from .maker import Maker, naming
-from .table import Table, held
+from .table import Table
 
 Array = NDArray[np.float64]
-KINDS = ("linear", "smooth")
 MAKING = 5  # frames between the caller of a maker and its warning
 ROWS = (
     Input("breakdown_torque", "N*m", "", TINY, "a finite torque > 0"),
@@ -224,22 +224,7 @@ class MakeOverOmega(Maker):
 
 def table_over_omega(x: Column, y: Column, kind: str, units: UnitSystem | None) -> Motor:
     """A motor from columns of speeds and torques; ValueError where they are no function."""
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise ValueError(f"over_omega: kind = {shown(kind)}: it is one of {', '.join(KINDS)}")
-    if len(x.values) != len(y.values):
-        raise ValueError(
-            f"over_omega: {len(x.values)} speeds and {len(y.values)} torques; expected as many of both"
-        )
-    if len(x.values) < 2:
-        raise ValueError(f"over_omega: {len(x.values)} of the speeds; expected at least two points")
-    steps = np.diff(x.values)
-    if not (steps > 0.0).all():
-        at = int(np.argmin(steps))
-        one, next = (amount("omega", x.values[k], "g") for k in (at, at + 1))
-        raise ValueError("over_omega: the speeds must ascend, but " + next + " follows " + one)
-    table = held(x.values, y.values, kind)
-    if not np.isfinite(table.rows).all():
-        raise ValueError("over_omega: two speeds are too close for the torques there")
+    table = ascending_table("over_omega", "omega", ("speeds", "torques"), (x, y), kind)
     return OverOmega(table, kind, ("omega",) * x.plain + ("torque",) * y.plain, units)
 
 

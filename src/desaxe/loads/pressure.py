@@ -27,6 +27,11 @@ class Piston:
         """The force along Y of a pressure [Pa]."""
         return -(pressure - self.ambient) * self.area
 
+    def functions(self, function: Any, derivative: Any) -> tuple[Any, Any]:
+        """A function that returns pressures [Pa], and its derivative, as ones of forces."""
+        slope = None if derivative is None else ForceOfPressure(derivative, self.area, 0.0)
+        return ForceOfPressure(function, self.area, self.ambient), slope
+
     def column(self, pressures: Column) -> Column:
         """A column of pressures as one of forces."""
         return Column([self.force(value) for value in pressures.values], "N")

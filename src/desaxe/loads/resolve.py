@@ -21,23 +21,29 @@ from ..mechanism.own import Definition, Register, register, used_by
 from ..mechanism.program import Variant, program_of
 from ..mechanism.quantity_units import UnitSystem
 from ..support.forks import IMPORTS
+from .along_motion import COLUMNS, FunctionOfMotion, OfMotion
 from .arguments import arguments_of, by_position
 from .function import FunctionOverTheta
 from .load import Load, OverY
 from .stroke import OverStroke
 
+FUNCTIONS = {"Y": "over_Y", "V_C": "over_V"}  # what makes a load of a function with its derivative
 VARIABLE = ("F_X", "F_Y")  # inputs that may vary with the motion
 
 
 def as_load(name: str, value: Any) -> Load:
-    """The load that a callable stands for: a plain function of theta is one over theta."""
+    """The load that a callable stands for: a function of what its arguments name."""
     if isinstance(value, Load):
         wanted = "N*m" if name == "torque" else INPUTS[name].unit
+        if name == "torque" and isinstance(value, OfMotion):
+            raise TypeError(f"torque = {value!r}: a torque over theta or omega, or a function, is expected")
         if value.unit not in (None, wanted):
             raise ValueError(f"{name}: the load is in {value.unit}, expected {wanted}")
         return value
-    arguments_of(name, value, ("theta",))
-    return FunctionOverTheta(by_position(value))
+    arguments = arguments_of(name, value, ("theta",) if name == "torque" else COLUMNS)
+    if arguments == ("theta",):
+        return FunctionOverTheta(by_position(value))
+    return FunctionOfMotion(by_position(value), arguments)
 
 
 def plain_units(name: str, load: Any, units: UnitSystem) -> dict[str, str]:
@@ -103,6 +109,12 @@ class LoadPlan(NamedTuple):
     loads: Mapping[str, Load]  # those that matter
     motion: tuple[str, ...]  # names of the motion, at a fixed load, which the loads and derivatives need
     forces_of: Mapping[str, tuple[str, ...]]  # those that a name depends on
+    of_motion: tuple[str, ...] = ()  # names of the motion that loads over its columns need
+
+    @property
+    def follows_speed(self) -> bool:
+        """True if a load depends on how fast the crank turns."""
+        return any(isinstance(load, OfMotion) and load.follows_speed for load in self.loads.values())
 
 
 MOST_PLANS = 1024
@@ -119,7 +131,7 @@ def plan_of(
     known   the definitions that names have
     """
     known = known or register()
-    sorts = tuple((name, type(load), load.centre, load.has_slope) for name, load in loads.items())
+    sorts = tuple((n, type(a), a.centre, a.has_slope, columns_of(a)) for n, a in loads.items())
     key = tuple(names), sorts, state, mu, known
     found = _PLANS.get(key)
     if found is None:
@@ -151,12 +163,16 @@ def _new_plan(
         used |= {n: loads[n] for n in some}
     every = [term for group in terms.values() for term in group]
     motion: dict[str, None] = {}
+    of_motion: dict[str, None] = {}
     for force, load in used.items():
+        by = sorted({term.parameter for term in every if term.force == force})
         if isinstance(load, OverY):
-            motion |= dict.fromkeys(load.motion(sorted({t.parameter for t in every if t.force == force})))
+            motion |= dict.fromkeys(load.motion(by))
+        elif isinstance(load, OfMotion):
+            of_motion |= dict.fromkeys(load.motion(by, state))
     more = (term.slope for term in every)
     wanted = tuple(dict.fromkeys((*names, *more)))
-    return LoadPlan(tuple(names), wanted, terms, used, tuple(motion), forces_of)
+    return LoadPlan(tuple(names), wanted, terms, used, tuple(motion), forces_of, tuple(of_motion))
 
 
 @lru_cache(maxsize=1024)
@@ -170,13 +186,14 @@ def _depends(name: str, force: str, mu: bool, own: tuple[Definition, ...]) -> bo
 def _terms(name: str, force: str, load: Load, state: bool, known: Register) -> tuple[Term, ...]:
     """The terms of a derivative that come through a load's dependence on the parameters."""
     base, parameters = parts(name)
-    through = [p for p in parameters if p in load.parameters]
+    # In a given state alpha changes no speed.
+    through = [p for p in parameters if p in load.parameters and not (state and p == "alpha")]
     if not through:
         return ()
     if not load.has_slope:
         raise ValueError(
             f"{name}: it needs the slope of {force}, a function without derivative; give "
-            f"{force} = desaxe.over_theta(f, derivative=...), or a table"
+            f"{force} = desaxe.{FUNCTIONS.get(load.over, 'over_theta')}(f, derivative=...), or a table"
         )
     others = list(parameters)
     others.remove(through[0])
@@ -188,6 +205,11 @@ def _terms(name: str, force: str, load: Load, state: bool, known: Register) -> t
     if len(through) > 1 or not slope:
         raise ValueError(f"{name}: this derivative is not derived for a load {force} over {load.over}")
     return (Term(slope, force, through[0]),)
+
+
+def columns_of(load: Load) -> tuple[Any, ...]:
+    """The columns of a load over the motion, and whether directions matter: plans differ by these."""
+    return (load.needs, load.has_ways) if isinstance(load, OfMotion) else ()
 
 
 def way_of(given: Mapping[str, Any]) -> Any:

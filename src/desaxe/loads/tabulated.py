@@ -1,7 +1,6 @@
 """`over_theta` and `over_Y`: loads from tables, files and functions."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 from warnings import warn
 
@@ -16,9 +15,10 @@ from .arithmetic import attach_operators
 from .columns import Column, column_of, places_and_values
 from .function import FunctionOverTheta
 from .load import Load
-from .made import table_over_stroke, table_over_theta, table_over_Y
+from .made import dead_centre_of, table_over_stroke, table_over_theta, table_over_Y
 from .maker import Maker, naming
-from .pressure import ForceOfPressure, Piston, forces_of, piston_of, pressure_unit
+from .pressure import Piston, forces_of, piston_of, pressure_unit
+from .units import force_unit, functions_over, load_over
 
 LONGEST_PERIOD = 1e9
 
@@ -39,8 +39,8 @@ class MakeOverTheta(Maker):
     `machine.over_theta` is the same in the units of a machine: its plain angles, forces and periods, and the
     angle and the force of a function.
 
-    `over_theta(f, derivative=None, nodes=())` makes one of a function of theta (arrays in, arrays out, or
-    numbers alone), which is called with the angle as it is. Names that need the slope of a load, such as
+    `over_theta(f, derivative=None, nodes=())` makes one of a function of one argument, the angle as it is
+    (arrays in, arrays out, or numbers alone: `np.sin`, too). Names that need the slope of a load, such as
     T_in_wrt_theta, need its derivative. nodes: angles at which it has kinks or jumps, in each period.
 
     `over_theta.read("press.csv", theta="deg", value="N")` reads a table from the first two columns of a file.
@@ -49,7 +49,8 @@ class MakeOverTheta(Maker):
                 or texts in bar, MPa, psi; the load is -(p - ambient) area: gas pushes it towards the crank
     ambient     the pressure on its other side; 0 without
 
-    Loads over the same thing add up; `2 * load` is a multiple, `load.shifted("120 deg")` lags by an angle.
+    Loads of any kind and numbers add up; `2 * load` is a multiple, `load.shifted("120 deg")` lags by an
+    angle.
 
     Derivatives by theta are total: they include the load's slope; at a kink it is that to the right. Raises
     ValueError or TypeError for a table that is no periodic function.
@@ -76,27 +77,18 @@ class MakeOverTheta(Maker):
         turn = self._period(period)
         piston = piston_of(name, area, bore, ambient, self.units)
         if callable(angles):
-            if derivative is None and callable(values):  # over_theta(f, derivative, nodes)
-                derivative, values = values, None
             if not isinstance(kind, str):
                 nodes = kind
-            if values is not None:
-                raise TypeError(f"{name}: values = {values!r} beside a function; give values or a function")
-            if derivative is not None and not callable(derivative):
-                raise TypeError(f"{name}: derivative = {derivative!r}: expected a function of theta")
             places = column_of(f"{name}: nodes", nodes, ("rad",), self.unit("theta")).values
-            if self.units:
-                angles, derivative = _in_units_of(self.units, angles, derivative, piston)
-            elif piston is not None:
-                angles, derivative = _of_pressure(angles, derivative, piston)
-            return FunctionOverTheta(angles, derivative, tuple(places), turn.values[0])
+            functions = functions_over(name, "theta", (angles, values, derivative), self.units, piston)
+            return FunctionOverTheta(*functions, tuple(places), turn.values[0])
         if derivative is not None or len(nodes):
             raise TypeError(f"{name}: derivative= and nodes= belong to a function; a table has its own")
         angles, values = places_and_values(angles, values)
         x = column_of(f"{name}: angles", angles, ("rad",), self.unit("theta"))
         if values is None:
             raise TypeError(f"{name}: values is missing (angles and values, or a function of theta)")
-        y = forces_of(f"{name}: values", values, ("N", "N*m"), _force(self.units), piston, self.units)
+        y = forces_of(f"{name}: values", values, ("N", "N*m"), force_unit(self.units), piston, self.units)
         return table_over_theta(x, y, kind, turn, self.units)
 
     def read(
@@ -161,7 +153,8 @@ class MakeOverY(Maker):
 
     Beyond the positions the values at the ends hold. Where the crank stands still it counts as turning
     forwards, or the way that a given alpha starts it. `over_Y.read("indicator.csv", Y="mm", value="N")`
-    reads the columns position, outward and, where there is one, inward.
+    reads the columns position, outward and, where there is one, inward. `over_Y(f, derivative=None)` makes a
+    load of a function of Y, for both ways, without kinks.
 
     `machine.over_Y` is the same in the units of a machine: its plain positions and forces.
     """
@@ -176,12 +169,15 @@ class MakeOverY(Maker):
         inward: Any = None,
         kind: str = "linear",
         *,
+        derivative: Callable[[Any], Any] | None = None,
         area: Any = None,
         bore: Any = None,
         ambient: Any = None,
     ) -> Load:
         """A load over the slider's position; see `help(desaxe.over_Y)`."""
         piston = piston_of("over_Y", area, bore, ambient, self.units)
+        if callable(positions) or derivative is not None:
+            return load_over("over_Y", "Y", (positions, outward, derivative), self.units, piston)
         columns = _columns("over_Y", "positions", positions, outward, inward, self.units, piston)
         return table_over_Y(*columns, kind)
 
@@ -227,6 +223,7 @@ class MakeOverStroke(Maker):
     dead centre forces are NaN, with status 1; at a change point, where the inner one moves infinitely fast
     with the lengths, derivatives by these are, with status 2. `over_stroke.read("press.csv", distance="mm",
     value="kN", dead_centre="outer")` reads the columns distance, outward and, where there is one, inward.
+    `over_stroke(f, derivative=None, dead_centre=)` makes a load of a function of the distance.
 
     `machine.over_stroke` is the same in the units of a machine: its plain distances and forces.
     """
@@ -242,12 +239,17 @@ class MakeOverStroke(Maker):
         kind: str = "linear",
         *,
         dead_centre: Any = None,
+        derivative: Callable[[Any], Any] | None = None,
         area: Any = None,
         bore: Any = None,
         ambient: Any = None,
     ) -> Load:
         """A load over the distance from a dead centre; see `help(desaxe.over_stroke)`."""
         piston = piston_of("over_stroke", area, bore, ambient, self.units)
+        if callable(distances) or derivative is not None:
+            centre = f"Y_{dead_centre_of(dead_centre)}"
+            functions = distances, outward, derivative
+            return load_over("over_stroke", "Y", functions, self.units, piston, centre)
         columns = _columns("over_stroke", "distances", distances, outward, inward, self.units, piston)
         return table_over_stroke(*columns, kind, dead_centre)
 
@@ -302,7 +304,7 @@ def _columns(
     if outward is None:
         raise TypeError(f"{name}: outward is missing: the load at each of the {places}")
     ways = [("outward", outward), *([] if inward is None else [("inward", inward)])]
-    force = _force(units)
+    force = force_unit(units)
     return at, [forces_of(f"{name}: {way}", values, ("N",), force, piston, units) for way, values in ways]
 
 
@@ -319,53 +321,9 @@ def _values(
     units: tuple[str, ...], piston: Piston | None, system: UnitSystem | None
 ) -> tuple[tuple[str, ...], Conversion | None]:
     """The SI units of a column, and the unit of plain numbers: of pressures where there is a piston."""
-    return (units, _force(system)) if piston is None else (("Pa",), pressure_unit(system))
-
-
-@dataclass(frozen=True)
-class Converted:
-    """A function of the crank angle in other units, called with radians, as one in SI units."""
-
-    function: Callable[[Any], Any]
-    angle: Conversion
-    value: Conversion
-
-    @property
-    def __name__(self) -> str:
-        """The name of the function."""
-        return getattr(self.function, "__name__", type(self.function).__name__)
-
-    def __call__(self, theta: Any) -> Any:
-        """The value in SI units."""
-        return self.value.to_si(self.function(self.angle.shown(theta)))
-
-
-def _in_units_of(units: UnitSystem, function: Any, derivative: Any, piston: Piston | None) -> tuple[Any, Any]:
-    """A function and its derivative in a machine's units, as ones in SI units."""
-    angle, value = units.of("theta"), _force(units) or Conversion("N")
-    if piston is not None:
-        value = pressure_unit(units) or Conversion("Pa")
-    slope = None if derivative is None else Converted(derivative, angle, value.per([angle]))
-    converted = Converted(function, angle, value)
-    return (converted, slope) if piston is None else _of_pressure(converted, slope, piston)
-
-
-def _of_pressure(function: Any, derivative: Any, piston: Piston) -> tuple[Any, Any]:
-    """A function that returns pressures [Pa], and its derivative, as ones of forces."""
-    slope = None if derivative is None else ForceOfPressure(derivative, piston.area, 0.0)
-    return ForceOfPressure(function, piston.area, piston.ambient), slope
+    return (units, force_unit(system)) if piston is None else (("Pa",), pressure_unit(system))
 
 
 def _unit(units: UnitSystem | None, name: str) -> Conversion | None:
     """The unit of plain numbers of a name; None where none is given."""
     return None if units is None else units.of(name)
-
-
-def _force(units: UnitSystem | None) -> Conversion | None:
-    """The unit of plain forces; ValueError where F_X and F_Y have different ones."""
-    one, other = _unit(units, "F_X"), _unit(units, "F_Y")
-    if one is not None and other is not None and one != other:
-        raise ValueError(
-            f"a load in a machine whose F_X is in {one.unit} and F_Y in {other.unit}: give texts with units"
-        )
-    return one

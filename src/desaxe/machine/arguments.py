@@ -4,7 +4,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..evaluation.reductions.argument import at_with_units
+from ..loads.arguments import ARGUMENTS, arguments_of
+from ..loads.load import Load
 from ..loads.resolve import settled
+from ..loads.units import function_in_si, slopes_in_si
 from ..mechanism import read
 from ..mechanism.inputs import INPUTS, Input
 from ..mechanism.names import WHOLE
@@ -26,7 +29,7 @@ def has_unit(name: str) -> bool:
 
 
 def in_si(system: UnitSystem, name: str, value: Any) -> Any:
-    """An argument in SI units; texts and pint quantities carry their units, functions are in SI."""
+    """An argument in SI units; texts and pint quantities carry their units."""
     if not system or value is None:
         return value
     if name == "data":
@@ -35,6 +38,8 @@ def in_si(system: UnitSystem, name: str, value: Any) -> Any:
 
         columns = columns_of(value, system).items()
         return {head: part if head.unit else _converted(system, head.name, part) for head, part in columns}
+    if name == "derivative" and callable(value):
+        return slopes_in_si(value, arguments_of(name, value, ARGUMENTS), system)
     value = at_with_units(value, system)
     if name in BY_KEY and isinstance(value, Mapping):
         return {key: _converted(system, _quantity_of(key), part) for key, part in value.items()}
@@ -64,6 +69,8 @@ def _converted(system: UnitSystem, name: str, value: Any) -> Any:
     if isinstance(value, (tuple, list)):
         parts = [_converted(system, name, part) for part in value]
         return type(value)(*parts) if hasattr(value, "_fields") else type(value)(parts)
+    if callable(value) and not (isinstance(value, Load) or hasattr(value, "call")):  # a motor has one
+        return function_in_si(name, value, arguments_of(name, value, ARGUMENTS), system)
     if callable(value):
         return settled(name, value, system)
     if hasattr(value, "ppf"):

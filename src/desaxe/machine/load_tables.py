@@ -5,7 +5,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..loads.load import Load, OverY, TableOverTheta
+from ..loads.along_motion import FunctionOfMotion
+from ..loads.load import Load, OverTheta, OverY, TableOverTheta
 from ..loads.motors import ROWS, Kloss, OverOmega
 from ..loads.stroke import OverStroke
 from ..mechanism.inputs import INPUTS
@@ -41,7 +42,8 @@ def load_table(name: str, load: Load, scene: Path, units: UnitSystem = SI, inlin
             more["dead_centre"] = load.dead_centre
         heads = [f"{name} {way}" for way in ("outward", "inward")[: len(load.tables)]]
     else:
-        raise TypeError(f"{name}: a function is not data, and cannot stand in a scene file; give a table")
+        what = "a function" if isinstance(load, (OverTheta, FunctionOfMotion)) else f"{load!r}"
+        raise TypeError(f"{name}: {what} is not data, and cannot stand in a scene file; give a table")
     period = [load.period] if isinstance(load, TableOverTheta) else []
     (places, own_period), along = _in_unit([load.tables[0].knots, period], units.of(place), si)
     ways, unit = [list(table.values) for table in load.tables], load.unit

@@ -5,6 +5,7 @@ from os import PathLike
 from typing import Any
 
 from ..evaluation.arrays import as_array
+from ..loads.elements import MakeDamper, MakeOverV, MakeSpring
 from ..loads.motors import MakeKloss, MakeOverOmega
 from ..loads.resolve import settled
 from ..loads.tabulated import MakeOverStroke, MakeOverTheta, MakeOverY
@@ -201,6 +202,21 @@ class Machine(Mapping[str, Any]):
     def over_stroke(self) -> MakeOverStroke:
         """`desaxe.over_stroke`, and its `read`, with plain numbers in the units of the machine."""
         return MakeOverStroke(self.units)
+
+    @property
+    def over_V(self) -> MakeOverV:
+        """`desaxe.over_V` with plain numbers in the units of the machine."""
+        return MakeOverV(self.units)
+
+    @property
+    def spring(self) -> MakeSpring:
+        """`desaxe.spring` with plain numbers in the units of the machine."""
+        return MakeSpring(self.units)
+
+    @property
+    def damper(self) -> MakeDamper:
+        """`desaxe.damper` with plain numbers in the units of the machine."""
+        return MakeDamper(self.units)
 
     @property
     def over_omega(self) -> MakeOverOmega:

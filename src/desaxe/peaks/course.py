@@ -1,6 +1,6 @@
 """Loads and conditions of designs over the crank angle: kinks, jumps, and the nodes that a search needs."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from math import inf
 from typing import Any, NamedTuple
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.under_loads.arcs import Arcs, arcs_of, meeting_in_turn
+from ..loads.along_motion import OfMotion, members_of, speeds_of
 from ..loads.angles import meeting_and_bent
 from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.closed.angles import dead_centres, repeated
@@ -16,8 +17,8 @@ from ..support.roots import sign_changes
 from .nodes import Array
 from .special import AT_KINK, ROUNDED, SearchedDesigns, own_nodes
 
-# What keeps a kink where it is: the angle, a position, a dead centre, the distance from one, conditions.
-FIXED, CROSSING, TURNING, FROM_OUTER, FROM_INNER, CONDITION = range(6)
+# What keeps a kink where it is: angle, position, dead centre, distance from one, speed, conditions.
+FIXED, CROSSING, TURNING, FROM_OUTER, FROM_INNER, SPEED, CONDITION = range(7)
 KIND_OF = {"": CROSSING, "Y_outer": FROM_OUTER, "Y_inner": FROM_INNER}
 BESIDE = 16.0  # last bits of an angle: so near to a jump is next to it
 
@@ -72,7 +73,9 @@ def course_of(designs: SearchedDesigns) -> Course:
     """The loads and conditions of designs over their range of angles."""
     low, high = designs.theta
     over_Y = {name: load for name, load in designs.loads.items() if isinstance(load, OverY)}
-    lengths = designs.lengths if over_Y or designs.rubs else []
+    of_motion = {name: load for name, load in designs.loads.items() if isinstance(load, OfMotion)}
+    members = members_of(of_motion.values())
+    lengths = designs.lengths if over_Y or of_motion or designs.rubs else []
     dead = dead_centres(lengths) if lengths else np.empty((designs.size, 0))
     met = {name: meeting_and_bent(load, lengths, designs.branch) for name, load in over_Y.items()}
     arcs = _arcs(designs, {name: every for name, (every, _) in met.items()}, dead)
@@ -82,13 +85,21 @@ def course_of(designs: SearchedDesigns) -> Course:
         if name in met
         else _over_theta(load, designs)
         for name, load in designs.loads.items()
+        if name not in of_motion
     ]
+    parts += [_over_theta(load, designs) for load in members if isinstance(load, OverTheta)]
+    for load in members:
+        if isinstance(load, OverY):
+            parts.append(
+                _over_Y(load, None, designs, *meeting_and_bent(load, lengths, designs.branch), turning)
+            )
+    parts += _at_speeds(speeds_of(members), designs, turning)
     known = [*(angles for part in parts for angles, _ in (*part.kinks, *part.jumps)), turning]
     conditions = _conditions(designs, np.concatenate(known, axis=1)) if designs.conditions else []
     parts += conditions
     nodes = np.concatenate([np.full((designs.size, 1), low), *(part.nodes for part in parts)], axis=1)
     nodes = np.where(np.isfinite(nodes), np.clip(nodes, low, high), low)
-    if not (over_Y or designs.conditions):
+    if not (over_Y or of_motion or designs.conditions):
         nodes = nodes[:1]
     some = (nodes != low).any(axis=0)  # of four turns that a range may touch, most are empty
     some[0] = True
@@ -120,6 +131,27 @@ def _conditions(designs: SearchedDesigns, known: Array) -> list[_Part]:
         angles = np.where(at_load, np.nan, angles)
         marks = [(angles, CONDITION + number)]
         parts.append(_Part(np.append(angles, np.nextafter(angles, -inf), axis=1), marks, marks))
+    return parts
+
+
+def _at_speeds(speeds: Sequence[float], designs: SearchedDesigns, turning: Array) -> list[_Part]:
+    """The angles at which the slider has the speeds of a table: there is a kink."""
+    if not speeds:
+        return []
+    start = np.full((designs.size, 1), designs.theta[0])
+    edges = np.where(np.isfinite(turning), np.clip(turning, *designs.theta), start)
+    nodes = np.sort(np.concatenate([own_nodes(designs)[0], edges], axis=1), axis=1)
+    free = designs._replace(loads={})
+    parts = []
+    for speed in speeds:
+
+        def value(rows: NDArray[np.intp], theta: Array, speed: float = speed) -> Array:
+            return np.asarray(_value(free, "V_C", rows, theta) - speed)
+
+        angles = sign_changes(value, nodes)
+        room = BESIDE * np.spacing(1.0 + np.abs(angles))
+        beside = np.concatenate([angles, angles - room, angles + room], axis=1)
+        parts.append(_Part(beside, [(angles, SPEED)], []))
     return parts
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..compiler.passes.guard import BAD_INPUT
 from ..definitions.conditions import conditions_of
 from ..evaluation.arrays import are_good
+from ..loads.along_motion import with_derivatives
 from ..loads.load import Load
 from ..mechanism.catalogue import has, of_design, quantity
 from ..mechanism.constants import constants
@@ -157,7 +158,7 @@ def peaks_of_designs(sought: Sought, search: Search, columns: dict[str, Array]) 
     """Value, angle, gradient and status of flat designs."""
     plan = sought.plan
     kinks = "mu" in plan.parameters or has_kinks(plan.wanted.form.own)
-    loads = with_slopes(sought.loads, *sought.ends) if sought.loads else {}
+    loads = with_slopes(with_derivatives(sought.loads, columns), *sought.ends) if sought.loads else {}
     conditions = conditions_of(plan.wanted.form.own)
     names = tuple(condition.name for condition in conditions)
     checked = _checked(

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..loads.angles import shift
 from ..mechanism.catalogue import has
 from ..mechanism.names import LENGTHS, sensitivity
-from .course import BESIDE, CONDITION, CROSSING, FIXED, FROM_INNER, FROM_OUTER, TURNING
+from .course import BESIDE, CONDITION, CROSSING, FIXED, FROM_INNER, FROM_OUTER, SPEED, TURNING
 from .loaded import Rows, ValuesUnderLoads
 from .nodes import Array
 from .special import AT_KINK, ROUNDED
@@ -27,6 +27,7 @@ KEPT: dict[int, tuple[str, ...]] = {
     TURNING: ("Y_wrt_theta",),
     FROM_OUTER: ("Y", "Y_outer"),
     FROM_INNER: ("Y", "Y_inner"),
+    SPEED: ("V_C",),
 }
 
 
@@ -144,7 +145,9 @@ def _move(values: ValuesUnderLoads, kind: int, what: int, rows: Rows, theta: Arr
     if not rows.size or what == FIXED:
         return
     designs, moved_by = values.designs.part(rows), values.search.parameters
-    if what < CONDITION:
+    if what == SPEED:
+        kept, designs = KEPT[what], designs._replace(loads={})
+    elif what < CONDITION:
         kept, moved_by, designs = KEPT[what], LENGTHS, designs._replace(loads={})
     else:
         kept = (designs.conditions[what - CONDITION],)

@@ -12,10 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..evaluation.arrays import evaluate_arrays
 from ..evaluation.under_loads.request import MOTION, LoadInputs, plan_for, under_loads
+from ..loads.along_motion import SPEEDS, OfMotion
 from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.load_lines import LoadLines, Total, Under
-from ..mechanism.names import sensitivity
+from ..mechanism.names import LENGTHS, sensitivity
 from .course import Course
 from .evaluations import compiled, totals_of
 from .nodes import Array
@@ -34,8 +36,8 @@ class ValuesUnderLoads:
     def __init__(self, name: str, search: Search, designs: SearchedDesigns, course: Course) -> None:
         self.designs, self.course, self.search = designs, course, search
         self.all = [name, *(sensitivity(name, p) for p in ("theta", *search.parameters))]
-        self.under = search_under(search, self.all, designs)
-        self.tables = LoadInputs(designs.loads, ()).tables()
+        self.under, self.loads = search_under(search, self.all, designs)
+        self.tables = self.loads.tables()
 
     def at(self, count: int, rows: Rows, theta: Array, pieces: dict[str, Rows] | None = None) -> list[Array]:
         """Value, slope and gradient, the first `count` of them, at angles that broadcast with some designs.
@@ -54,12 +56,30 @@ class ValuesUnderLoads:
         totals = compiled(totals_of, self.under, "curve" if count == 2 else "finish")
         inputs = {**self.tables, **over_theta_at(self.designs.loads, theta), "theta": theta}
         inputs |= {f"{force}_piece": piece.astype(float) for force, piece in held.items()}
+        if self.loads.motion is not None:
+            inputs |= self._of_motion(rows, theta, totals.inputs)
         columns = self.designs.columns
         for name in totals.inputs:
             if name in columns:
                 column = columns[name]
                 inputs[name] = column[rows] if column.strides[0] else column[:1]  # or one number for all
         return totals(inputs)
+
+    def _of_motion(self, rows: Rows, theta: Array, needed: Sequence[str]) -> dict[str, Any]:
+        """Loads over columns of the motion, and their derivatives that are needed."""
+        motion, columns = self.loads.motion, self.designs.columns
+        assert motion is not None
+        given = {name: column[rows] for name, column in columns.items() if name in (*LENGTHS, *SPEEDS)}
+        given = dict(zip((*given, "theta"), np.broadcast_arrays(*given.values(), theta), strict=True))
+        flat = {name: np.where(np.isnan(x), 1.0, x).reshape(-1) for name, x in given.items()}
+        known = evaluate_arrays(motion, motion.inputs, flat, 1, None)
+        of_motion = [n for n in needed if n not in columns and n != "theta"]
+        loads = {n: a for n, a in self.designs.loads.items() if isinstance(a, OfMotion)}
+        found = LoadInputs(loads, tuple(of_motion)).at(flat, known)
+        return {
+            name: np.broadcast_to(x, flat["theta"].shape).reshape(given["theta"].shape)
+            for name, x in found.items()
+        }
 
     def block(self, designs: SearchedDesigns, rows: Rows) -> Array:
         """The inputs of designs for `curve` and `finish`."""
@@ -75,8 +95,8 @@ class ValuesUnderLoads:
         return np.array(self.at(len(self.all), block[0].astype(np.intp), theta))
 
 
-def search_under(search: Search, names: Sequence[str], designs: SearchedDesigns) -> Search:
-    """The search of total derivatives under loads.
+def search_under(search: Search, names: Sequence[str], designs: SearchedDesigns) -> tuple[Search, LoadInputs]:
+    """The search of total derivatives under loads, and the inputs that these give.
 
     names   the quantity, its slope over theta, its gradient
 
@@ -92,12 +112,14 @@ def search_under(search: Search, names: Sequence[str], designs: SearchedDesigns)
             f"peak of {name}: it has the slope of {' and '.join(plan.loads)}, whose second one its own slope "
             f'would need; grid("{name}", reduce={{"theta": "absmax"}}, ...) takes the largest of samples'
         )
-    under = under_loads(plan, inputs, designs.branch, "standard").asked.form.under
+    asked, _, own_inputs = under_loads(plan, inputs, designs.branch, "standard")
+    under = asked.form.under
     assert under is not None
+    assert own_inputs is not None
     under = under._replace(loads=tuple(_line(line, designs.loads[line.force]) for line in under.loads))
     if own:
         under = _of_partial(search, under, plan.loads)
-    return search._replace(form=search.form._replace(under=under))
+    return search._replace(form=search.form._replace(under=under)), own_inputs
 
 
 def _of_partial(search: Search, under: Under, loads: Mapping[str, Load]) -> Under:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.under_loads.loaded import loads_of
+from ..loads.along_motion import SPEEDS, OfMotion
 from ..loads.angles import cycle
 from ..loads.load import LoadWarning
 from ..loads.resolve import VARIABLE
@@ -106,6 +107,10 @@ def peak(
     _, varying = loads_of(given)
     plan = plan_of(name, given, branch, accuracy)
     varying = {n: load for n, load in varying.items() if n in plan.parameters}
+    if any(isinstance(load, OfMotion) and load.follows_speed for load in varying.values()):
+        speeds = [n for n in SPEEDS if given[n] is not None and not (n == "alpha" and is_steady(alpha))]
+        plan = plan._replace(parameters=tuple(dict.fromkeys((*plan.parameters, *speeds))))
+        plan = plan._replace(needs=tuple(dict.fromkeys((*plan.needs, *speeds))))
     ends = _range((0.0, cycle(varying)) if theta is ONE_TURN else theta, name)
     sought = Sought(plan, kind, int(branch), ends, threads, varying)
     _warn_of_columns(given, plan)

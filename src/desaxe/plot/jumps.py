@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..evaluation.evaluate import evaluate
 from ..evaluation.labels import known_loads
 from ..evaluation.under_loads.arcs import arcs_of
+from ..loads.along_motion import members_of
 from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
@@ -57,7 +58,7 @@ def _jumps(
     """Angles before and after every jump of one of the designs, ascending, those at the ends included."""
     found = [np.empty(0)]
     columns = dict(zip(given, np.broadcast_arrays(*(np.atleast_1d(v) for v in given.values())), strict=True))
-    for load in loads.values():
+    for load in members_of(loads.values()):
         if isinstance(load, OverTheta):
             nodes = np.array(load.nodes(low, high, smooth=False))
             found += [nodes, np.nextafter(nodes, -inf)]

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..loads.along_motion import OfMotion
 from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.closed import TURN
 from ..mechanism.quantity_units import SI, UnitSystem
@@ -24,10 +25,17 @@ STYLES: tuple[dict[str, Any], ...] = ({"color": BLUE}, {"color": ORANGE, "linest
 BEYOND = 0.08  # of the range of positions: so far it is shown how the values at the ends hold
 
 
-def load(load: Load, *, ax: "Axes | None" = None, units: UnitSystem | None = None) -> Picture:
-    """Draw a load over its period, or over the slider's position or distance from a dead centre.
+def load(
+    load: Load,
+    *,
+    over: tuple[float, float] | None = None,
+    ax: "Axes | None" = None,
+    units: UnitSystem | None = None,
+) -> Picture:
+    """Draw a load over its period, over the slider's position, distance from a dead centre or speed.
 
-    load   of `over_theta`, `over_Y` or `over_stroke`
+    load   of `over_theta`, `over_Y`, `over_stroke`, `over_V`, `spring`, `damper`; of a function of one column
+    over   the range of positions or speeds in these units, of a load that has no points
     ax     where to draw; by default a new Figure
     units  a unit system; by default that of the machine which made the load. Angles are in degrees
 
@@ -46,6 +54,10 @@ def load(load: Load, *, ax: "Axes | None" = None, units: UnitSystem | None = Non
         places, curves, points = _over_theta(load)
         along, what = np.degrees, "crank angle, theta [deg]"
         ax.xaxis.set_major_locator(MultipleLocator(45.0 * ceil(load.period / TURN)))
+    elif isinstance(load, OfMotion):
+        places, curves, points = _over_column(load, over, units)
+        along = units.of(load.needs[0]).shown
+        what = f"{load.over} [{printed(units.of(load.needs[0]).unit)}]"
     else:
         assert isinstance(load, OverY)
         places, curves, points = _over_position(load)
@@ -85,6 +97,26 @@ def _over_position(load: OverY) -> Drawn:
     curves = {name: load.value(places, way) for name, way in ways.items()}
     values = np.array([y for table in load.tables for y in table.values])
     return places, curves, (np.tile(knots, len(load.tables)), values)
+
+
+def _over_column(load: OfMotion, over: tuple[float, float] | None, units: UnitSystem) -> Drawn:
+    """A load over the slider's position or speed, in SI units."""
+    if len(load.needs) > 1:
+        raise TypeError(
+            f"{load!r} depends on {', '.join(load.needs)}: a picture is of a load over one of them"
+        )
+    knots = np.array(load.speeds if load.tables else [])
+    if over is None and not knots.size:
+        raise TypeError(f"plot.load: over=(low, high) is missing, the range of {load.over} to draw")
+    room = BEYOND * (knots[-1] - knots[0]) if knots.size else 0.0
+    column = units.of(load.needs[0])
+    low, high = (column.to_si(x) for x in over) if over is not None else (knots[0] - room, knots[-1] + room)
+    places = _nodes(float(low), float(high), knots)
+
+    def values(x: Array) -> Array:
+        return np.asarray(load.partials({load.needs[0]: x}).value)
+
+    return places, {"load": values(places)}, (knots, values(knots) if knots.size else knots)
 
 
 def _nodes(low: float, high: float, knots: Array) -> Array:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ..loads.along_motion import OfMotion
 from ..loads.arguments import ARGUMENTS, arguments_of
 from ..loads.load import Load as LoadOverMotion
 from ..loads.motors import Motor
@@ -200,10 +201,15 @@ def read_until(until: Any) -> tuple[float, ...]:
 def read_wrt(wrt: Any, given: Mapping[str, Any]) -> tuple[str, ...]:
     """The parameters of the sensitivities of a motion: numbers of the call, whose loads have derivatives."""
     wanted = (wrt,) if isinstance(wrt, str) else several(wrt)
+    loads = {n: a for n, a in given.items() if isinstance(a, OfMotion)}
+    own = [f"{force}.{number}" for force, load in loads.items() for number in load.numbers]
     for name in wanted:
+        if name in own:
+            continue
         if name not in given:
-            asked = did_you_mean(name, given) if isinstance(name, str) else ""
-            raise ValueError(f"wrt: no parameter {shown(name)}; {asked}there are {', '.join(given)}")
+            known = [*given, *own]
+            asked = did_you_mean(name, known) if isinstance(name, str) else ""
+            raise ValueError(f"wrt: no parameter {shown(name)}; {asked}there are {', '.join(known)}")
         if callable(given[name]):
             raise ValueError(f"wrt: {name} = {shown(given[name])} is no number, there is no derivative by it")
     for name in ("F_X", "F_Y"):

@@ -5,13 +5,14 @@ state. That piece goes on smoothly a little beyond the kink at which the motion 
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from math import copysign, inf, isfinite, isnan, nextafter
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..loads.along_motion import OfMotion, SumOfLoads
 from ..loads.angles import crossings, zero_of
 from ..loads.arguments import by_position
 from ..loads.function import FunctionOverTheta
@@ -224,11 +225,7 @@ class PositionCurve(Curve):
 
     def stand(self, design: SliderDesign, lengths: tuple[float, ...], branch: int) -> None:
         """Stand in a design; ValueError where it has not the dead centre that a load is measured from."""
-        self.design = design
-        self.zero = float(zero_of(self.load, [np.array([length]) for length in lengths], branch)[0])
-        if isnan(self.zero):
-            which = self.load.centre.removeprefix("Y_")
-            raise ValueError(f"{self.load!r}: this design has no {which} dead centre")
+        self.design, self.zero = design, _zero_in(self.load, lengths, branch)
 
     def along(self, theta: Any) -> tuple[Any, Any]:
         """The position or distance at an angle, and the slope of Y."""
@@ -293,11 +290,7 @@ class FunctionCurve(Curve):
         """The values, one by one."""
         if np.ndim(theta) != np.ndim(omega) or np.ndim(t) != np.ndim(omega):
             t, theta, omega = np.broadcast_arrays(t, theta, omega)
-        now = {"t": t, "theta": theta, "omega": omega}
-        if not {"Y", "s", "V_C"}.isdisjoint(self.arguments):
-            assert self.design is not None
-            now["Y"], now["s"], slope = self.design.slider(theta)
-            now["V_C"] = slope * omega
+        now = self.columns(t, theta, omega)
         if not np.ndim(omega):
             return self._one({name: float(value) for name, value in now.items()})
         columns = [now[argument].tolist() for argument in self.arguments]
@@ -309,6 +302,15 @@ class FunctionCurve(Curve):
             return np.array(found)
         rows = zip(*(now[name].tolist() for name in now), strict=True)
         return np.array([self._one(dict(zip(now, row, strict=True))) for row in rows])
+
+    def columns(self, t: Any, theta: Any, omega: Any) -> dict[str, Any]:
+        """The columns of the motion at instants, by name."""
+        now = {"t": t, "theta": theta, "omega": omega}
+        if not {"Y", "s", "V_C"}.isdisjoint(self.arguments):
+            assert self.design is not None
+            now["Y"], now["s"], slope = self.design.slider(theta)
+            now["V_C"] = slope * omega
+        return now
 
     def slopes(self, t: Any, theta: Any, omega: Any, value: Any = None) -> Slopes:
         """The values, and their differences."""
@@ -347,6 +349,79 @@ class FunctionCurve(Curve):
         return number
 
 
+class MotionCurve(FunctionCurve):
+    """A load over columns of the motion."""
+
+    def __init__(self, load: OfMotion) -> None:
+        self.load, self.arguments, self.depends_on_time = load, load.needs, False
+        self.design: SliderDesign | None = None
+        self.zero, self.derivative = 0.0, None
+
+    def stand(self, design: SliderDesign, lengths: tuple[float, ...], branch: int) -> None:
+        """Stand in a design; ValueError where it has not the dead centre that a load is measured from."""
+        self.design, self.zero = design, _zero_in(self.load, lengths, branch)
+
+    def kinks(self, lengths: tuple[float, ...], branch: int) -> list[tuple[float, float]]:
+        """The dead centres, where a load has a kink at rest of the slider."""
+        if 0.0 not in self.load.speeds:
+            return []
+        return [(angle, TURN) for angle in dead_centres([np.array([x]) for x in lengths])[0].tolist()]
+
+    def columns(self, t: Any, theta: Any, omega: Any) -> dict[str, Any]:
+        """The columns that the load needs."""
+        return {**super().columns(t, theta, omega), self.load.centre: self.zero}
+
+    def at(self, t: Any, theta: Any, omega: Any) -> Any:
+        """The load."""
+        return self.load.partials(self.columns(t, theta, omega)).value
+
+
+class SumCurve(Curve):
+    """Multiples of loads, and a number."""
+
+    def __init__(self, load: Any, factors: Sequence[float], parts: Sequence[Curve], constant: float) -> None:
+        self.load, self.factors, self.members, self.constant = load, factors, parts, constant
+
+    def at(self, t: Any, theta: Any, omega: Any) -> Any:
+        """The sum."""
+        terms = zip(self.factors, self.members, strict=True)
+        return sum((factor * part.at(t, theta, omega) for factor, part in terms), self.constant)
+
+    def slopes(self, t: Any, theta: Any, omega: Any, value: Any = None) -> Slopes:
+        """The sum and its slopes."""
+        parts = [part.slopes(t, theta, omega) for part in self.members]
+        sums = (
+            sum(f * x for f, x in zip(self.factors, row, strict=True)) for row in zip(*parts, strict=True)
+        )
+        value, *slopes = sums
+        return Slopes(value + self.constant, *slopes)
+
+    def ahead(self, theta: float, omega: float, direction: float, growing: float = 1.0) -> Curve:
+        """The sum of the pieces ahead."""
+        parts = [part.ahead(theta, omega, direction, growing) for part in self.members]
+        return SumCurve(self.load, self.factors, parts, self.constant)
+
+    def kinks(self, lengths: tuple[float, ...], branch: int) -> list[tuple[float, float]]:
+        """The kinks of all members."""
+        return [kink for part in self.members for kink in part.kinks(lengths, branch)]
+
+    def stand(self, design: SliderDesign, lengths: tuple[float, ...], branch: int) -> None:
+        """Stand in a design."""
+        for part in self.members:
+            part.stand(design, lengths, branch)
+
+
+LOADED = (AngleCurve, PositionCurve, MotionCurve, SumCurve)  # which stand for a load
+
+
+def _zero_in(load: Load, lengths: tuple[float, ...], branch: int) -> float:
+    """The position from which a load is measured; ValueError where a design has not the dead centre."""
+    zero = float(zero_of(load, [np.array([length]) for length in lengths], branch)[0])
+    if isnan(zero):
+        raise ValueError(f"{load!r}: this design has no {load.centre.removeprefix('Y_')} dead centre")
+    return zero
+
+
 def _difference(function: Callable[[Any], Any], x: Any, size: float, value: Any) -> Any:
     """A forward difference, good enough for an iteration; size: of what x is measured by."""
     step = STEP * (size or 1.0)
@@ -357,4 +432,9 @@ def curve_of(load: Load | Motor) -> Curve:
     """The curve of a motor or a load."""
     if isinstance(load, Motor):
         return MotorCurve(load)
+    if isinstance(load, SumOfLoads):
+        factors = [factor for factor, _ in load.terms]
+        return SumCurve(load, factors, [curve_of(part) for part in load.members], load.constant)
+    if isinstance(load, OfMotion):
+        return MotionCurve(load)
     return PositionCurve(load) if isinstance(load, OverY) else AngleCurve(load)

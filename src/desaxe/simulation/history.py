@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
-from .drive import AngleCurve, ConstantCurve, Curve, PositionCurve
+from .drive import LOADED, ConstantCurve, Curve
 from .events import Q, W
 from .law import state_of
 from .march import March
@@ -171,6 +171,6 @@ def _set_end(motion: Motion, t: Array, alpha: Array) -> None:
 
 def _along(curve: Curve, t: Array, theta: Array, omega: Array) -> Any:
     """A load at every instant of a history; one that `evaluate` knows as it is, with its slope."""
-    if isinstance(curve, (AngleCurve, PositionCurve)):
+    if isinstance(curve, LOADED):
         return curve.load
     return curve.value if isinstance(curve, ConstantCurve) else curve.at(t, theta, omega)

@@ -9,7 +9,7 @@ import numpy as np
 from ..support.deadline import Deadline
 from ..support.forks import IMPORTS
 from .checks import design_values, drive_of, model_of, scalar
-from .drive import AngleCurve, PositionCurve
+from .drive import LOADED
 from .energy.motion import design_of, motion_of
 from .energy.serves import tables_alone
 from .history import FORCES, instants_of, integrated
@@ -57,7 +57,7 @@ def one_motion(
             if motion is not None:
                 return motion.result(ask.names, times, {**known, **loads})
     kept = zip(FORCES, drive[1:], strict=True)
-    curves = {n: c.load for n, c in kept if isinstance(c, (AngleCurve, PositionCurve))}
+    curves = {n: c.load for n, c in kept if isinstance(c, LOADED)}
     return in_time(ask, model, start, times, known, curves)
 
 

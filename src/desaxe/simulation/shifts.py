@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..loads.angles import shift
 from ..mechanism.names import LENGTHS, sensitivity
-from .drive import Curve, PositionCurve
+from .drive import Curve, PositionCurve, SumCurve
 from .events import V
 from .law import state_of
 from .march import March
@@ -22,6 +22,7 @@ from .tangents import Tangents
 
 Array = NDArray[np.float64]
 SAME = 1e-9  # of the accelerations: a jump by less is rounding
+AT_KINK = 1e-7  # rad: an angle so near to a kink is at the kink
 TOUCHED = 1e-6  # of the largest speed, or of its change in the motion's time: less is none
 
 
@@ -109,9 +110,23 @@ class Shifts:
 
     def kink(self, curve: Curve, theta: float) -> Array:
         """The shift of a kink of a load by each parameter: one over the slider moves with the lengths."""
+        if isinstance(curve, SumCurve):
+            shifts = [self.kink(part, theta) for part in curve.members if self._bends(part, theta)]
+            if not shifts or all((one == shifts[0]).all() for one in shifts):
+                return shifts[0] if shifts else self.tangents.by_lengths({})
+            self.notes.append(f"NaN where loads of a sum jump at one angle, theta = {theta:.6g}")
+            return np.full(len(self.wrt), nan)
         if isinstance(curve, PositionCurve):
             return self._by_lengths(curve.load.kept, theta)
         return self.tangents.by_lengths(curve.moves(theta))
+
+    def _bends(self, curve: Curve, theta: float) -> bool:
+        """True if a curve has a kink at an angle."""
+        gaps = [
+            (abs(theta - angle) % period, period)
+            for angle, period in curve.kinks(self.model.lengths, self.model.branch)
+        ]
+        return any(min(gap, period - gap) < AT_KINK for gap, period in gaps)
 
     def dead_centre(self, event: Event) -> Array:
         """The shift of a dead centre by each parameter: the same in every turn."""

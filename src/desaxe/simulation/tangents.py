@@ -8,6 +8,7 @@ with s the product of the signs of N and of the slider's velocity (paper C, link
 """
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from math import copysign, cos, nan, sin
 from typing import Any, NamedTuple
 
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
+from ..loads.along_motion import OfMotion
 from ..mechanism.catalogue import has
 from ..mechanism.names import LENGTHS, sensitivity
 from .drive import Slopes
@@ -34,6 +36,8 @@ class Tangents:
 
     def __init__(self, model: Model, wrt: Sequence[str], inputs: Mapping[str, Any]) -> None:
         self.model, self.wrt, self.inputs = model, tuple(wrt), inputs
+        follow = {n: a for n, a in inputs.items() if isinstance(a, OfMotion) and a.follows_speed}
+        self.still = {**inputs, **dict.fromkeys(follow, 0.0)} if follow else None
         self.of_design = [p for p in wrt if p not in (*STARTS, "torque")]
         arc = model.coordinate
         self.of_limits = [self.limit(end) for end in (arc.first, arc.last)] if arc.half else []
@@ -55,18 +59,34 @@ class Tangents:
         return self.by_lengths({"ec": -1.0 / arm, "AB": -sin(theta) / arm, "BC": side / arm})
 
     def values(
-        self, names: Sequence[str], theta: Any, omega: Any = CREEP, alpha: Any = 0.0, mu: float = 0.0
+        self,
+        names: Sequence[str],
+        theta: Any,
+        omega: Any = CREEP,
+        alpha: Any = 0.0,
+        mu: float = 0.0,
+        still: bool = False,
     ) -> dict[str, Array]:
-        """Quantities along the motion; loads see the direction of the crank, at rest too."""
-        state = {"theta": theta, "omega": omega, "alpha": alpha}
-        found = evaluate(list(names), **{**self.inputs, **state, "mu": mu})
-        return {name: np.broadcast_to(value, np.shape(theta)) for name, value in found.items()}
+        """Quantities along the motion; loads see the direction of the crank, at rest too.
+
+        still   without loads that depend on the speed
+        """
+        known = self.still if still and self.still else self.inputs
+        inputs = {**known, "theta": theta, "omega": omega, "alpha": alpha, "mu": mu}
+        parts = {name: name.partition(".") for name in names}
+        found = evaluate(list(dict.fromkeys(head for head, *_ in parts.values())), **inputs)
+        for name, (head, _, number) in parts.items():
+            if number:  # by a number of a load: that by the load times the load's own
+                load = known[head.rpartition("_wrt_")[2]]
+                by = load.by_at(partial(evaluate, **inputs), theta, omega) if callable(load) else {}
+                found[name] = found[head] * by.get(number, 0.0)
+        return {name: np.broadcast_to(found[name], np.shape(theta)) for name in names}
 
     def _names(self, name: str, *state: str) -> list[str]:
         """A quantity and its derivatives by these variables of the state and by the inputs."""
         slopes = [sensitivity(name, p) for p in ("theta", *state, *self.of_design) if p != "mu"]
         several = "sliders" in self.inputs  # whose sums have derivatives by every input
-        return [name, *(slope for slope in slopes if several or has(slope, True))]
+        return [name, *(slope for slope in slopes if several or has(slope.partition(".")[0], True))]
 
     def _rows(self, name: str, known: Mapping[str, Array], by_theta: Array, by_omega: Any = None) -> Array:
         """The derivatives of a quantity, from those of angle and speed."""
@@ -106,7 +126,8 @@ class Tangents:
         signs   of the slider's velocity over that of the crank, and of the normal force, held under friction
         """
         theta, by_theta, bent = self.angles(q)
-        known = self.values([*self._names("M_eff"), *self._names("T_in")], theta, np.copysign(CREEP, v))
+        names = [*self._names("M_eff"), *self._names("T_in")]
+        known = self.values(names, theta, np.copysign(CREEP, v), still=True)
         inertia, slope = known["M_eff"], by_theta[0]
         root, log = np.sqrt(inertia), self._rows("M_eff", known, by_theta) / (2.0 * inertia)
         omega = v / root
@@ -118,6 +139,11 @@ class Tangents:
         of_torque[2:] += self.flags("torque").reshape(-1, *[1] * t.ndim)
         push = torque.value - known["T_in"]
         of_push = of_torque - self._rows("T_in", known, by_theta)
+        if self.still:
+            for sign, still in ((1.0, False), (-1.0, True)):  # inertia cancels
+                moving = self.values(self._names("T_in", "omega"), theta, omega, still=still)
+                push = push - sign * moving["T_in"]
+                of_push = of_push - sign * self._rows("T_in", moving, by_theta, by_omega)
         if self.model.mu or "mu" in self.wrt:
             state = _State(theta, omega, by_theta, by_omega)
             taken, of_taken = self._friction(state, inertia, torque.value, of_torque, signs)

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...evaluation.reductions.own_measure import OwnMeasure
 from ...evaluation.under_loads.loaded import loads_of
+from ...loads.along_motion import with_derivatives
 from ...mechanism.inputs import INPUTS, Input
 from ...mechanism.keywords import check_inputs
 from ...mechanism.messages import Message, NamedValue, amount, message_of, named
@@ -77,6 +78,7 @@ def space_of(
     missing = [name for name in LENGTHS if name not in over and name not in numbers]
     if missing:
         raise TypeError(f"{caller}: {missing[0]} is missing (in over= or as a number)")
+    loads = with_derivatives(loads, {**numbers, **{name: max(pair) for name, pair in ends.items()}})
     low, high = (np.array([pair[i] for pair in ends.values()]) for i in (0, 1))
     return Space(tuple(over), low, high, {**numbers, **loads}, branch, deadline)
 

@@ -9,7 +9,7 @@ T the motor's torque, L what loads and gravity hold against it, R the torque of 
 `way |Y'| mu |N|`; the normal force N depends on the acceleration that it changes (simulation/law.py).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import pi
 from typing import Any, NamedTuple
 
@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...evaluation.evaluate import evaluate
+from ...loads.along_motion import OfMotion, speeds_of
 from ...loads.angles import meeting_angles
 from ...loads.load import Load
 from ...mechanism.closed.angles import dead_centres
@@ -76,7 +77,12 @@ class DesignRows(NamedTuple):
     @property
     def switches(self) -> bool:
         """True if kinks of a motion depend on its speed."""
-        return bool(self.source.knots) or self.has_friction
+        return bool(self.source.knots or self.speeds) or self.has_friction
+
+    @property
+    def speeds(self) -> list[float]:
+        """The slider's speeds at which a load has a kink."""
+        return speeds_of(self.loads.values())
 
     def each(self, values: Any, ndim: int) -> Any:
         """Numbers of designs beside arrays of this many dimensions."""
@@ -122,7 +128,7 @@ class DesignRows(NamedTuple):
         found = [np.tile([0.0, period], (self.size, 1)), *map(self.kinks, loads)]
         if self.turn is not None:
             found.append(self.turn.edges(["T_in"]) * self.way[:, None] % period)
-        if self.has_friction:
+        if self.has_friction or 0.0 in self.speeds:
             own = dead_centres(self.lengths()) * self.way[:, None]
             found += [(own + 2.0 * pi * k) % period for k in range(self.turns)]
         return divided(np.concatenate(found, axis=1), WIDEST)
@@ -144,6 +150,7 @@ class Coefficients(NamedTuple):
     inertia, slope   M_eff + J, and its derivative by theta
     load             L
     guide            the normal force at rest, its parts by omega^2 and by T - L; K on one side, and the arm
+    follow           loads that depend on the speed
     """
 
     theta: Array
@@ -152,18 +159,57 @@ class Coefficients(NamedTuple):
     slope: Array
     load: Array
     guide: tuple[Array, ...] | None
+    follow: tuple["Following", ...] = ()
 
     def some(self, at: Any) -> "Coefficients":
         """The coefficients at some of the places."""
         guide = None if self.guide is None else tuple(v[at] for v in self.guide)
+        follow = tuple(one.some(at) for one in self.follow)
         theta, inertia, slope, load = (v[at] for v in (self.theta, self.inertia, self.slope, self.load))
-        return Coefficients(theta, self.way, inertia, slope, load, guide)
+        return Coefficients(theta, self.way, inertia, slope, load, guide, follow)
+
+
+class Following(NamedTuple):
+    """A load that depends on the speed, at places.
+
+    columns  of the motion that do not depend on the speed
+    travel   dY/dtheta
+    arm      the torque [m] on the crank by the force
+    normal   what the normal force grows by with the force
+    """
+
+    load: OfMotion
+    columns: dict[str, Array]
+    travel: Array
+    arm: Array
+    normal: Array | None
+
+    def some(self, at: Any) -> "Following":
+        """The load at some of the places."""
+        columns = {name: column[at] for name, column in self.columns.items()}
+        normal = None if self.normal is None else self.normal[at]
+        return Following(self.load, columns, self.travel[at], self.arm[at], normal)
+
+    def read(self, read: Callable[[Array], Array], theta: Array) -> "Following":
+        """The load at other places, by a reader of panels."""
+        columns = {name: read(column) for name, column in self.columns.items()} | {"theta": theta}
+        normal = None if self.normal is None else read(self.normal)
+        return Following(self.load, columns, read(self.travel), read(self.arm), normal)
+
+    def at(self, omega: Array) -> tuple[Array, Array]:
+        """The force and its derivative by the speed."""
+        now = {**self.columns, "omega": omega, "V_C": self.travel * omega}
+        now["way"] = np.sign(now["V_C"])
+        value, by = self.load.partials(now)
+        return value, by.get("omega", 0.0) + by.get("V_C", 0.0) * self.travel
 
 
 def picked(fields: Any, rows: Array) -> Any:
     """Some rows of a named tuple of arrays, of tuples of them and of numbers."""
 
     def of(value: Any) -> Any:
+        if isinstance(value, Following):
+            return value.some(rows)
         if isinstance(value, tuple):
             return tuple(map(of, value))
         return value[rows] if isinstance(value, np.ndarray) else value
@@ -174,11 +220,13 @@ def picked(fields: Any, rows: Array) -> Any:
 def course_of(designs: DesignRows, x: Array) -> Coefficients:
     """The course of designs at places x: an array with a row for each."""
     way = designs.each(designs.way, x.ndim)
-    still = {"omega": way * CREEP, "alpha": 0.0}
+    still: dict[str, Any] = {"omega": way * CREEP, "alpha": 0.0}
     names = ["M_eff", "M_eff_wrt_theta", "T_in"]
     friction = designs.has_friction
     if friction:
         names += ["N_C", "N_C_wrt_alpha", "Y_wrt_theta", "phi"]
+    follow = {n: a for n, a in designs.loads.items() if isinstance(a, OfMotion) and a.follows_speed}
+    still |= dict.fromkeys(follow, 0.0)
     found = designs.values(names, x, **still, mu=None)
     inertia, slope = found["M_eff"] + designs.each(designs.J, x.ndim), found["M_eff_wrt_theta"]
     guide = None
@@ -192,7 +240,20 @@ def course_of(designs: DesignRows, x: Array) -> Coefficients:
         arm = mu * np.abs(travel) * way
         lean = designs.branch * np.tan(found["phi"]) * mu * np.sign(travel) * way
         guide = (found["N_C"], a, b, lean - arm * b, arm)
-    return Coefficients(designs.theta(x), way, inertia, slope, found["T_in"], guide)
+    following = tuple(_following(designs, name, load, x) for name, load in follow.items())
+    return Coefficients(designs.theta(x), way, inertia, slope, found["T_in"], guide, following)
+
+
+def _following(designs: DesignRows, force: str, load: OfMotion, x: Array) -> Following:
+    """A load that depends on the speed, at places x."""
+    free = {**dict.fromkeys(designs.loads, 0.0), "omega": 1.0, "alpha": 0.0, "mu": None}
+    motion = [n for n in load.motion((), True) if n not in ("omega", "V_C")]
+    slopes = [f"T_in_wrt_{force}", *([f"N_C_wrt_{force}"] if designs.has_friction else [])]
+    found = designs.values([*motion, "Y_wrt_theta", *slopes], x, **free)
+    columns = {**{name: found[name] for name in motion}, "theta": designs.theta(x)}
+    return Following(
+        load, columns, found["Y_wrt_theta"], -found[slopes[0]], found[slopes[1]] if slopes[1:] else None
+    )
 
 
 class Rate(NamedTuple):
@@ -212,13 +273,24 @@ def rate(course: Coefficients, source: TorqueSource, row: Mapping[str, Any], E: 
         square = 2.0 * E / course.inertia
         omega = course.way * np.sqrt(square)
         torque, by_omega = source.both(course.theta, omega, row)
-        push, steep = torque - course.load, by_omega * omega / (2.0 * E)
+        pressed_by: Any = 0.0
+        by_pressed: Any = 0.0
+        push = torque - course.load
+        for one in course.follow:
+            force, by_speed = one.at(omega)
+            push, by_omega = push + one.arm * force, by_omega + one.arm * by_speed
+            if one.normal is not None:
+                pressed_by, by_pressed = pressed_by + one.normal * force, by_pressed + one.normal * by_speed
+        steep = by_omega * omega / (2.0 * E)
         if course.guide is None:
             return Rate(course.way * push, course.way * steep, omega, torque)
         still, a, b, wedge, arm = course.guide
-        normal = still + a * square + b * push
+        normal = still + a * square + b * push + pressed_by
         pressed = np.copysign(1.0, normal)
         wedge = wedge * pressed
         rub = arm * pressed / (1.0 - wedge)
-        f, g = push - rub * normal, steep - rub * (2.0 * a / course.inertia + b * steep)
+        f, g = (
+            push - rub * normal,
+            steep - rub * (2.0 * a / course.inertia + b * steep + by_pressed * omega / (2.0 * E)),
+        )
         return Rate(course.way * f, course.way * g, omega, torque, normal, wedge)

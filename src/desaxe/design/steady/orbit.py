@@ -103,6 +103,9 @@ def switches(orbit: Orbit) -> Array:
     """The places where a motion passes a knot of the motor or the guide changes sides, in padded rows."""
     mesh = orbit.mesh
     found = [mesh.roots(orbit.rate.omega - knot) for knot in orbit.designs.source.knots]
+    if orbit.designs.speeds:
+        (one, *_) = orbit.course.follow
+        found += [mesh.roots(one.travel * orbit.rate.omega - speed) for speed in orbit.designs.speeds]
     if orbit.rate.normal is not None:
         found.append(mesh.roots(orbit.rate.normal))
     every = np.sort(np.concatenate([mesh.edges[:, :1], *found], axis=1), axis=1)

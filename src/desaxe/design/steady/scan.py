@@ -139,7 +139,8 @@ def _course_at(designs: DesignRows, edges: Array, course: Coefficients, x: Array
     read = Panels(edges).reader(x)
     guide = None if course.guide is None else tuple(map(read, course.guide))
     three = read(course.inertia), read(course.slope), read(course.load)
-    return Coefficients(designs.theta(x), course.way, *three, guide)
+    follow = tuple(one.read(read, designs.theta(x)) for one in course.follow)
+    return Coefficients(designs.theta(x), course.way, *three, guide, follow)
 
 
 def _resolved(designs: DesignRows, edges: Array) -> tuple[Array, Coefficients]:

@@ -10,11 +10,13 @@ times what it moves by.
 """
 
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...loads.along_motion import OfMotion
 from ...runtime.request import request
 from ...support.computed import computed_once
 from .designs import DesignRows
@@ -47,6 +49,8 @@ class OrbitSlopes:
         self.z_slope = 2.0 * (orbit.rate.f - 0.5 * by_x * self.z) / orbit.course.inertia  # from dE/dx
         self.alpha = 0.5 * orbit.course.way * self.z_slope
         wanted = ["T_in_wrt_omega", "T_in_wrt_alpha", *(f"T_in_wrt_{name}" for name in self.names)]
+        with_numbers = {n: a for n, a in self.designs.loads.items() if isinstance(a, OfMotion) and a.numbers}
+        wanted += [f"T_in_wrt_{name}" for name in with_numbers]
         found = self.designs.values(wanted, orbit.mesh.x, omega=orbit.rate.omega, alpha=self.alpha)
         row, way = self.designs.row(3), orbit.course.way
         _, by_speed = self.designs.source.both(orbit.course.theta, orbit.rate.omega, row)
@@ -56,6 +60,10 @@ class OrbitSlopes:
         self.by_speed, self.by_motor = by_speed, self.designs.source.by(orbit.rate.omega, row)
         pushes = {**self.by_motor, **{name: -found[f"T_in_wrt_{name}"] for name in self.names}}
         pushes["flywheel_inertia"] = -self.alpha
+        for force, load in with_numbers.items():
+            there = partial(self.designs.values, x=orbit.mesh.x, omega=orbit.rate.omega, alpha=self.alpha)
+            for name, slope in load.by_at(there, orbit.course.theta, orbit.rate.omega).items():
+                pushes[f"{force}.{name}"] = -found[f"T_in_wrt_{force}"] * slope
         self.forcing = {name: 2.0 * way * push / mass for name, push in pushes.items()}
 
     def each(self) -> Iterator[tuple[str, Array]]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ...evaluation.arrays import are_good, as_array, broadcast_shape
 from ...evaluation.under_loads.loaded import loads_of
+from ...loads.along_motion import with_derivatives
 from ...loads.angles import turns_of
 from ...mechanism.inputs import INPUTS, Input
 from ...mechanism.keywords import check_inputs, with_known_keywords
@@ -144,6 +145,7 @@ def _designs(
     arrays = {name: as_array(name, value, LENGTHS, ("steady",)) for name, value in numbers.items()}
     speed = arrays.pop("omega0", None)
     speed = arrays.pop("omega", speed)
+    loads = with_derivatives(loads, {**arrays, "omega": 1.0 if speed is None else speed})
     motor = {name: np.asarray(value, float) for name, value in source.numbers.items()}
     J = _row(FLYWHEEL, flywheel)
     extra = {"flywheel_inertia": J}

@@ -43,7 +43,7 @@ def why_none(designs: DesignRows, states: States, k: int) -> str:
         some = _each(speeds, ".2g")
         return "no steady state: below some " + some + " it slows down, above it runs away"
     there = np.isfinite(gains)
-    if not designs.source.varies and not designs.has_friction and there.any():
+    if not (designs.source.varies or scan.turns.course.follow) and not designs.has_friction and there.any():
         return _of_number(designs, scan, k)
     if not there.any() or (gains[there] < 0.0).all():
         return "no steady state: the motor is too weak, " + _stall(designs, scan, k)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...evaluation.under_loads.loaded import loads_of
+from ...loads.along_motion import with_derivatives
 from ...mechanism.catalogue import has, inputs_of, quantity
 from ...mechanism.keywords import with_known_keywords
 from ...mechanism.names import LENGTHS, sensitivity
@@ -87,7 +88,9 @@ def tolerance(
     _check(distribution, sigmas, samples, seed)
     check_common(inputs, branch)
     numbers, loads = loads_of({n: v for n, v in inputs.items() if v is not None})
-    given = {**{n: read(n, v, distribution, sigmas) for n, v in numbers.items()}, **loads}
+    given: dict[str, Any] = {n: read(n, v, distribution, sigmas) for n, v in numbers.items()}
+    means = {n: v.mean if isinstance(v, Inexact) else v for n, v in given.items()}
+    given |= with_derivatives(loads, means)
     rough = [value for value in given.values() if isinstance(value, Inexact)]
     if not rough:
         missing = "".join(f"; {name} is missing" for name in LENGTHS if name not in given)

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...evaluation.arrays import are_good, as_array, broadcast_shape
 from ...evaluation.under_loads.loaded import loads_of
+from ...loads.along_motion import with_derivatives
 from ...loads.angles import turns_of
 from ...mechanism.catalogue import has, quantity
 from ...mechanism.closed.limits import margin_of
@@ -81,6 +82,7 @@ def crossings(name: str, *, value: Any = 0.0, branch: int = 1, **inputs: Any) ->
         if length not in numbers:
             as_number(length, None, LENGTHS, ("crossings",))
     designs = {key: as_array(key, v, LENGTHS, ("crossings",)) for key, v in numbers.items()}
+    loads = with_derivatives(loads, designs)
     arrays = {**designs, "value": read_array(row, value)}
     shape = broadcast_shape(arrays)
     flat = {key: np.broadcast_to(v, shape).reshape(-1) for key, v in arrays.items()}

@@ -16,6 +16,7 @@ import numpy as np
 
 from ...definitions.conditions import conditions_of
 from ...evaluation.evaluate import evaluate
+from ...loads.along_motion import members_of, speeds_of, with_derivatives
 from ...loads.angles import crossings, meeting_angles, shift
 from ...loads.load import Load, OverY
 from ...mechanism.catalogue import has
@@ -45,7 +46,8 @@ class Cycle:
         turns: int,
         backwards: bool = False,
     ) -> None:
-        self.numbers, self.loads, self.branch, self.turns = dict(numbers), dict(loads), int(branch), turns
+        self.numbers, self.loads = dict(numbers), with_derivatives(loads, numbers)
+        self.branch, self.turns = int(branch), turns
         self.backwards = backwards
 
     @property
@@ -86,7 +88,8 @@ class Cycle:
 
     def _moving(self, names: Sequence[str]) -> list[tuple[tuple[str, ...], Array]]:
         """A quantity, or two whose difference stays the same at angles of jumps, and these, in rows."""
-        loads = [load for load in self.loads.values() if isinstance(load, OverY) and load.jumps]
+        every = members_of(self.loads.values())
+        loads = [load for load in every if isinstance(load, OverY) and load.jumps]
         meeting = [(load.kept, crossings(load, load.jumps, self.lengths, self.branch)) for load in loads]
         groups = [(("Y_wrt_theta",), dead_centres(self.lengths)), *meeting]
         return [*((kept, repeated(angles, *self.ends)) for kept, angles in groups), *self._conditions(names)]
@@ -143,9 +146,13 @@ class Cycle:
         low, high = self.ends
         across = repeated(ACROSS, low, high)
         met = meeting_angles(self.loads.values(), high, self.lengths, self.branch, low)
-        moving = [angles for _, angles in self._moving(names)]
-        parts = [np.array([[low, high]]), across[None], met, *moving]
+        jumps = [angles for _, angles in self._moving(names)]
+        parts = [np.array([[low, high]]), across[None], met, *jumps]
         edges = np.concatenate([np.broadcast_to(part, (size, part.shape[1])) for part in parts], axis=1)
+        speeds = speeds_of(self.loads.values())
+        if speeds:
+            moving = resolved(lambda theta, row: self.values(["V_C"], theta, row, motion, **other), edges)
+            edges = np.concatenate([edges, *(moving.roots(moving.values["V_C"] - v) for v in speeds)], axis=1)
         if self.has_friction and self._depend_on_friction(names):
             sides = resolved(
                 lambda theta, row: self.values(["N_C"], theta, row, motion, **{**other, "mu": None}), edges

@@ -4,16 +4,19 @@ Its variant names the loads, never their content: tables are arguments of a kern
 which looks them up and gives total derivatives; of a Python function the values at the angles are.
 """
 
-from collections.abc import Container, Iterable, Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from ...loads.along_motion import SPEEDS, OfMotion
 from ...loads.function import naming
 from ...loads.lines import line_of, totals_of
-from ...loads.load import Load, OverTheta, OverY, TableOverTheta
-from ...loads.resolve import LoadPlan, plan_of, split
+from ...loads.load import Load, OverTheta, OverY, TableOverTheta, ahead
+from ...loads.resolve import LoadPlan, columns_of, plan_of, split, way_of
 from ...mechanism.load_lines import LoadLines, TurningSense, Under
 from ...mechanism.names import LENGTHS, STATUS
 from ...mechanism.own import register
+from ...runtime.point import point_of
 from ...runtime.request import Request, accuracy_of, is_steady, request
 from ...support.forks import IMPORTS
 from ...support.recent import Recent
@@ -26,15 +29,22 @@ class LoadInputs(NamedTuple):
     """The inputs of a request that follow from loads.
 
     loads      those that vary with the motion
-    functions  the inputs that are values or derivatives of Python functions
+    functions  the inputs that are values or derivatives of Python functions and of loads over the motion
+    motion     the request of the columns of the motion that these need, and of their derivatives
     """
 
     loads: Mapping[str, Load]
     functions: tuple[str, ...]
+    motion: Request | None = None
 
     def at_point(self, numbers: Mapping[str, float]) -> dict[str, Any]:
         """All inputs at a point, from those of the caller; tables are lists, which need no NumPy."""
-        return {**numbers, **self.tables(arrays=False), **self.at(numbers["theta"])}
+        motion: Mapping[str, float] = {}
+        if self.motion is not None:
+            point = point_of(self.motion.names, self.motion.form, self.motion.fixed, self.motion.accuracy)
+            known = point.function(*(numbers[name] for name in point.inputs))
+            motion = dict(zip(self.motion.shown, known, strict=True))
+        return {**numbers, **self.tables(arrays=False), **self.at(numbers, motion)}
 
     def tables(self, arrays: bool = True) -> dict[str, Any]:
         """The arrays and numbers of tables, by the names of a kernel's inputs."""
@@ -46,17 +56,33 @@ class LoadInputs(NamedTuple):
                 result |= {f"{name}_first": load.table.knots[0], f"{name}_period": load.period}
         return result
 
-    def at(self, theta: Any) -> dict[str, Any]:
-        """The values and derivatives of Python functions at angles, a number or an array."""
+    def at(
+        self, given: Mapping[str, Any], motion: Mapping[str, Any] = MappingProxyType({})
+    ) -> dict[str, Any]:
+        """The values and derivatives of loads that are no tables, from inputs, and the motion there."""
         result: dict[str, Any] = {}
+        theta = given["theta"]
         for name in self.loads if self.functions else ():
-            if name in self.functions or f"{name}_by_theta" in self.functions:
-                load = self.loads[name]
+            load = self.loads[name]
+            if isinstance(load, OfMotion):
+                result |= self._of_motion(name, load, {**motion, "theta": theta}, given)
+            elif name in self.functions or f"{name}_by_theta" in self.functions:
                 assert isinstance(load, OverTheta)
                 with naming(name):
                     value, slope = load.both(theta)
                 result |= {name: _finite_or_zero(value), f"{name}_by_theta": slope}
         return {name: value for name, value in result.items() if name in self.functions}
+
+    def _of_motion(
+        self, name: str, load: OfMotion, motion: Mapping[str, Any], given: Mapping[str, Any]
+    ) -> dict[str, Any]:
+        """A load over columns of the motion, and its derivatives by the parameters that are needed."""
+        way = ahead(motion, way_of(given)) if load.has_ways else 1.0
+        with naming(name):
+            value, by = load.partials({**motion, "way": way})
+        by_name = f"{name}_by_"
+        needed = [one.removeprefix(by_name) for one in self.functions if one.startswith(by_name)]
+        return {name: value, **{by_name + p: load.total(by, p, motion) for p in needed}}
 
     def names(self) -> set[str]:
         """The names of all inputs that loads give."""
@@ -98,39 +124,44 @@ def plan_for(names: Sequence[str], given: Mapping[str, Any]) -> tuple[dict[str, 
     return numbers, plan_at(names, loads, numbers)
 
 
-_KNOWN: Recent[Any, tuple[Request, tuple[str, ...], tuple[str, ...]]] = Recent(MOST_KNOWN)
+_KNOWN: Recent[Any, tuple[Request, tuple[str, ...], tuple[str, ...], Request | None]] = Recent(MOST_KNOWN)
 
 
 def under_loads(plan: LoadPlan, given: Mapping[str, Any], branch: int, accuracy: Any) -> LoadedRequest:
     """The request of a plan's totals."""
     lines = tuple(_lines(name, load) for name, load in plan.loads.items())
     present = tuple(name for name, value in given.items() if value is not None)
-    key = plan.shown, lines, present, is_steady(given.get("alpha")), branch, accuracy_of(accuracy), register()
+    sort = tuple(columns_of(load) for load in plan.loads.values())
+    steady, accuracy = is_steady(given.get("alpha")), accuracy_of(accuracy)
+    key = plan.shown, lines, sort, present, steady, branch, accuracy, register()
     known = _KNOWN.get(key)
     if known is None:
         known = _KNOWN[key] = _new_request(plan, lines, given, branch, accuracy)
-    asked, inputs, functions = known
-    return LoadedRequest(asked, inputs, LoadInputs(plan.loads, functions))
+    asked, inputs, functions, motion = known
+    return LoadedRequest(asked, inputs, LoadInputs(plan.loads, functions, motion))
 
 
 def _new_request(
     plan: LoadPlan, lines: tuple[LoadLines, ...], given: Mapping[str, Any], branch: int, accuracy: Any
-) -> tuple[Request, tuple[str, ...], tuple[str, ...]]:
+) -> tuple[Request, tuple[str, ...], tuple[str, ...], Request | None]:
     every = tuple(dict.fromkeys((*plan.names, *plan.motion)))
     asked = request(every, {**given, **dict.fromkeys(plan.loads, 1.0)}, branch, accuracy)
     names = dict(zip(asked.shown, asked.names, strict=True))
     under = Under(tuple(names.items()), lines, totals_of(plan), _sense(given))
     own = tuple(names[name] for name in plan.shown)
     asked = Request(plan.shown, own, asked.form._replace(under=under), asked.fixed, asked.accuracy)
-    of_functions = {f"{line.force}{end}" for line in lines if not line.over for end in ("", "_by_theta")}
-    made = made_by(plan.loads)
-    inputs = tuple(name for name in dict.fromkeys((*asked.inputs, "theta")) if name not in made)
-    return asked, inputs, tuple(name for name in asked.inputs if name in of_functions)
-
-
-def made_by(loads: Iterable[str]) -> set[str]:
-    """The inputs of a kernel that are numbers or columns of loads."""
-    return {f"{load}{end}" for load in loads for end in ("", "_by_theta", "_first", "_period")}
+    terms = [term for group in plan.terms.values() for term in group]
+    by = {f"{term.force}_by_{term.parameter}" for term in terms}
+    motion = None
+    if plan.of_motion:
+        needed = {n: given.get(n) for n in (*LENGTHS, *SPEEDS) if n in LENGTHS or plan.follows_speed}
+        motion = request(
+            plan.of_motion, {**dict.fromkeys(MOTION), **needed, "theta": 1.0}, branch, "standard"
+        )
+    more = () if motion is None else motion.inputs
+    made = by | {f"{load}{end}" for load in plan.loads for end in ("", "_first", "_period")}
+    inputs = tuple(name for name in dict.fromkeys((*asked.inputs, "theta", *more)) if name not in made)
+    return asked, inputs, tuple(name for name in asked.inputs if name in by or name in plan.loads), motion
 
 
 def _lines(name: str, load: Load) -> LoadLines:

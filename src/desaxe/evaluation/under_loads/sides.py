@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...loads.along_motion import members_of
 from ...loads.angles import crossings
 from ...loads.load import Load, OverTheta, OverY
 from ...loads.table import SAME
@@ -24,7 +25,7 @@ def sides_of(name: str, source: Points, points: Mapping[str, Array]) -> NDArray[
     size = points["theta"].size
     points = {**{n: np.full(size, value) for n, value in source.numbers}, **points}
     side = np.zeros(size, np.int8)
-    loads = () if source.loads is None else source.loads.loads.values()
+    loads = members_of(() if source.loads is None else source.loads.loads.values())
     near = np.logical_or.reduce([_near(load, points, source.branch) for load in loads])
     rows = np.flatnonzero(near)
     if rows.size:
@@ -47,7 +48,8 @@ def _near(load: Load, points: Mapping[str, Array], branch: int) -> NDArray[np.bo
     theta = points["theta"]
     if isinstance(load, OverTheta):
         return _near_nodes(np.array(load.nodes(0.0, load.period, smooth=False)), load.period, theta)
-    assert isinstance(load, OverY)
+    if not isinstance(load, OverY):
+        return np.zeros(theta.size, np.bool_)
     lengths = [points[n] for n in LENGTHS]
     angles = [crossings(load, load.jumps, lengths, branch), *([dead_centres(lengths)] if load.turns else [])]
     away = theta[:, None] - np.concatenate(angles, axis=1)

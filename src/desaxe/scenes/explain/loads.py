@@ -7,7 +7,8 @@ from ...evaluation.plan import Plan
 from ...evaluation.points import Points
 from ...evaluation.reductions.measures import AtPlace
 from ...evaluation.reductions.reduced import Reduced
-from ...loads.load import Load, OverTheta, OverY, TableOverTheta
+from ...loads.along_motion import OfMotion
+from ...loads.load import Load, OverTheta, TableOverTheta
 
 
 class LoadCost(NamedTuple):
@@ -40,5 +41,6 @@ def _cost(
         if not isinstance(load, TableOverTheta):
             return LoadCost(name, angles, "a Python function, called with all angles")
         return LoadCost(name, angles, "once for each angle")
-    assert isinstance(load, OverY)
+    if isinstance(load, OfMotion):
+        return LoadCost(name, points, "at each point, from the motion there")
     return LoadCost(name, points, "at each point, by the kernel" if compiled else "at the point")
