@@ -45,6 +45,8 @@ class Shifts:
             return none  # it breaks away without a jump of alpha, or at an instant of its own
         if after.law.rests:
             return y * [[0.0], [-1.0]]
+        if before.law.drive == after.law.drive and before.law.direction == after.law.direction:
+            return none  # the guide changes sides, where it does not press
         theta, omega = state_of(self.model, *after.y[: V + 1].tolist())
         instant = after.start, theta, omega
         left, right = (float(piece.law.alpha(*instant)) for piece in (before, after))

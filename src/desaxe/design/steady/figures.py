@@ -22,8 +22,8 @@ class Figures(NamedTuple):
     gradient: dict[str, dict[str, Array]]
 
 
-def figures_of(orbit: Orbit, slopes: OrbitSlopes | None) -> Figures:
-    """The results of orbits; without slopes no derivatives."""
+def figures_of(orbit: Orbit, slopes: OrbitSlopes) -> Figures:
+    """The results of orbits."""
     mesh, designs, omega = orbit.mesh, orbit.designs, orbit.rate.omega
     way, speed = designs.way, np.abs(omega)
     period = mesh.integral(1.0 / speed)
@@ -37,8 +37,6 @@ def figures_of(orbit: Orbit, slopes: OrbitSlopes | None) -> Figures:
         "power_mean": work / period, "work": work, "multiplier": multiplier, "stable": multiplier < 1.0,
     }  # fmt: skip
     gradient: dict[str, dict[str, Array]] = {key: {} for key in KEYS}
-    if slopes is None:
-        return Figures(values, gradient)
     speeds = _Speeds(orbit, slopes, np.stack([at_fastest, at_slowest], axis=1))
     share = mesh.half * WEIGHT  # of each node in an integral
     through = slopes.by_speed * omega / speed**2  # twice the torque's slope by omega^2

@@ -25,7 +25,7 @@ class Wheel:
 
     def at(self, J: Array) -> tuple[States, Array, Array, Array]:
         """The steady states with these flywheels; of each design the row, the fluctuation, its slope."""
-        states = states_of(self.designs._replace(J=J), gradient=True)
+        states = states_of(self.designs._replace(J=J))
         main = main_of(states, self.designs.size)
         there = main >= 0
         shown, slope = np.full(len(J), np.inf), np.full(len(J), np.nan)

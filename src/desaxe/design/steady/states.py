@@ -29,19 +29,18 @@ class States(NamedTuple):
     """Steady states: the design of each, its figures and course; the scan that found them."""
 
     design: Array
-    E0: Array
     figures: Figures
     course: dict[str, Array]
     jams: Array  # where friction leaves no balance of forces, or two; or nothing has inertia
     scan: Scan
 
 
-def states_of(designs: DesignRows, gradient: bool) -> States:
+def states_of(designs: DesignRows) -> States:
     """All steady states of designs."""
     scanned = scan(designs, designs.edges())
     edges = scanned.turns.edges
     found = scanned.found()
-    solved = _Solved(designs.rows(found.design), gradient)
+    solved = _Solved(designs.rows(found.design))
     many = max(1, AT_ONCE // edges.shape[1])
     for first in range(0, designs.size, many):
         lanes = np.arange(*np.searchsorted(found.design, [first, first + many]))
@@ -52,7 +51,6 @@ def states_of(designs: DesignRows, gradient: bool) -> States:
     good = np.flatnonzero(solved.good & stable & _first_of_each(found.design, solved.E0))
     return States(
         found.design[good],
-        solved.E0[good],
         Figures(
             {k: v[good] for k, v in solved.values.items()},
             {k: {p: v[good] for p, v in by.items()} for k, by in solved.gradient.items()},
@@ -84,8 +82,8 @@ def _settle(solved: "_Solved", edges: Array, turns: Turns, found: Brackets, lane
 class _Solved:
     """The results of lanes, filled as their panels resolve them."""
 
-    def __init__(self, lanes: DesignRows, gradient: bool) -> None:
-        self.lanes, self.with_gradient = lanes, gradient
+    def __init__(self, lanes: DesignRows) -> None:
+        self.lanes = lanes
         self.good, self.jams = np.zeros(lanes.size, bool), np.zeros(lanes.size, bool)
         self.E0 = np.full(lanes.size, np.nan)
         self.values: dict[str, Array] = {}
@@ -115,21 +113,18 @@ class _Solved:
 
     def _finish(self, index: Array, orbit: Orbit) -> Array:
         """Take the motions whose derivatives are polynomials, too; the panels on which others are not."""
-        slopes, bad = None, np.zeros(orbit.F.shape[:-1], bool)
-        if self.with_gradient:
-            slopes = OrbitSlopes(orbit)
-            bad = unresolved(orbit, tuple(slopes.forcing[name] for name in slopes.names))
-            bad &= ~jammed(orbit)[:, None] & (orbit.mesh.edges.shape[1] <= PANELS)
-        if bad.any():
-            done = np.flatnonzero(~bad.any(1))
-            index, orbit = index[done], _rows(orbit, done)
-            slopes = OrbitSlopes(orbit) if len(done) else None
-        self._take(index, orbit, slopes)
+        slopes = OrbitSlopes(orbit)
+        bad = unresolved(orbit, tuple(slopes.forcing[name] for name in slopes.names))
+        bad &= ~jammed(orbit)[:, None] & (orbit.mesh.edges.shape[1] <= PANELS)
+        done = np.flatnonzero(~bad.any(1))
+        if len(done) == len(index):
+            self._take(index, orbit, slopes)
+        elif len(done):
+            orbit = _rows(orbit, done)
+            self._take(index[done], orbit, OrbitSlopes(orbit))
         return bad
 
-    def _take(self, index: Array, orbit: Orbit, slopes: OrbitSlopes | None) -> None:
-        if not len(index):
-            return
+    def _take(self, index: Array, orbit: Orbit, slopes: OrbitSlopes) -> None:
         figures = figures_of(orbit, slopes)
         count = self.lanes.size
         self.good[index], self.E0[index] = orbit.good, orbit.E0

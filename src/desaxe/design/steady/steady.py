@@ -96,7 +96,7 @@ def steady(
         part = designs.rows(index)
         if wanted is not None:
             part = with_flywheels(part, wanted[index])
-        parts.append((index, part, states_of(part, gradient=True), wanted is not None))
+        parts.append((index, part, states_of(part), wanted is not None))
     made_of = {**designs.numbers, **designs.loads, **({} if sliders is None else {"sliders": sliders})}
     about = {"inputs": made_of, "torque": torque, "branch": int(branch)}
     return result_of(shape, parts, about)
