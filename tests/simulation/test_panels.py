@@ -7,8 +7,9 @@ import pytest
 
 import desaxe as dx
 from benchmarks.rows import cranks
-from desaxe.simulation.loops import dense, nodes, picard, tableau
-from desaxe.simulation.loops.compiled import DesignFamily, motions
+from desaxe.simulation.collocation import TABLE
+from desaxe.simulation.loops import nodes, picard, state
+from desaxe.simulation.loops.compiled import DesignFamily, motions, packed
 from desaxe.simulation.loops.motions import designs
 from desaxe.simulation.loops.torque import compiled
 from desaxe.simulation.model import form_of
@@ -101,32 +102,39 @@ def test_the_integrals_from_rest_are_exact_for_powers():
         np.testing.assert_allclose(energies, 2.0 / (power + 2) * s ** (power + 2), rtol=1e-10, atol=1e-16)
 
 
-@pytest.mark.parametrize(("omega", "panels"), [(0.0, True), (1.0, False)])
-def test_machine_code_has_the_bits_of_plain_python(omega, panels, monkeypatch):
-    """A crank of 1 kg m^2 under 3 + t N m: from rest by panels alone, else by steps in time."""
-    family = DesignFamily(form_of({}), (("ec", 0.0),))
-    kernel, torque = family.kernel(), compiled(lambda t: 3.0 + t)
-    inputs = dict.fromkeys(kernel.scalars, 0.0) | {"AB": 0.1, "BC": 0.3, "I_crank": 1.0}
-    rows = family.rows(kernel, inputs, 1)
-    setup = np.array(
-        [[1.0, -math.inf, math.inf, 0.0, torque.address, 0.0, 0.5, omega, 0.0, kernel.code.address]]
-    )
-    times, how = np.array([0.0, 1e-3, 0.3, 2.0]), np.array([1e-10, 2.0, math.inf, 1000.0, float(panels)])
-    A, C, last = tableau.A, tableau.C, tableau.STAGES
-    tables = A[:last, :last].copy(), tableau.B, C[:last].copy(), tableau.E3, tableau.E5, tableau.D
-    tables = *tables, A[last + 1 :].copy(), C[last + 1 :].copy(), nodes.table()
+def test_machine_code_has_the_values_of_plain_python():
+    """A crank of 1 kg m^2 under 3 + t N m, from rest; but for fused products."""
+    kernel, torque = DesignFamily(form_of({}), (("ec", 0.0),)).kernel(), compiled(lambda t: 3.0 + t)
+    data = packed(kernel, dict.fromkeys(kernel.scalars, 0.0) | {"AB": 0.1, "BC": 0.3, "I_crank": 1.0}, 2)
+    law = np.zeros((2, state.ENERGY + 1))
+    law[:, state.KERNEL], law[:, state.THETA0] = kernel.code.address, 0.5
+    law[:, state.FIRST], law[:, state.LAST] = (-math.inf, -1000.0), (math.inf, 1000.0)  # over angles, in time
+    law[:, state.TORQUE], law[:, state.TORQUE + 1] = state.FUNCTION, torque.address
+    times, how = np.array([0.0, 1e-3, 0.3, 2.0]), np.array([1e-10, 2.0, 1000.0])
     answers = []
     for run in (motions(), designs):
-        if run is designs and panels:
-            monkeypatch.setattr(dense, "step", None)
-        outs = [np.zeros((1, 4)) for _ in range(3)], np.full(1, -1, np.int8), np.empty((1, 5))
+        outs = np.zeros((2, 3, 4)), np.full(2, -1, np.int8), np.empty((2, 4))
         with np.errstate(all="ignore"):  # the change of the first torques is from whatever the room had
-            run(rows, setup, times, how, *tables, *outs[0], *outs[1:])
-        answers.append(outs)
-    (histories, status, numbers), (theirs, *_) = answers
-    assert (status[0], numbers[0, 0]) == (0, 2.0)
-    np.testing.assert_allclose(histories, theirs, rtol=1e-10 if panels else 0.0)  # fused products
-    right = 0.5 + omega * times + 1.5 * times**2 + times**3 / 6.0
-    np.testing.assert_allclose(histories[0][0], right, rtol=1e-10)
-    np.testing.assert_allclose(histories[1][0], omega + 3.0 * times + 0.5 * times**2, rtol=1e-9)
-    np.testing.assert_allclose(histories[2][0], 3.0 + times, rtol=1e-12)
+            run(law, data, times, how, TABLE, nodes.table(), *outs)
+        answers.append(outs[0])
+        assert outs[1].tolist() == [0, 0]
+        assert outs[2][:, 0].tolist() == [2.0, 2.0]
+    np.testing.assert_allclose(*answers, rtol=1e-10)
+    right = [0.5 + 1.5 * times**2 + times**3 / 6.0, 3.0 * times + 0.5 * times**2, 3.0 + times]
+    for design in answers[0]:
+        np.testing.assert_allclose(design, right, rtol=1e-9)
+
+
+@pytest.mark.parametrize("inertia", [0.02, np.array([0.02, 0.021])], ids=["one", "many"])
+def test_a_function_that_jumps_next_to_an_end_of_a_panel(inertia):
+    """Kinetic energy of a balanced crank against the work of 1 N m where cos(theta) > 0, else 0.2 N m."""
+    found = dx.simulate(
+        torque=lambda t, theta, omega: 1.0 if math.cos(theta) > 0.0 else 0.2, t_end=2.0, rtol=1e-10,
+        AB=0.05, BC=0.15, ec=0.0, I_crank=inertia,
+    )  # fmt: skip
+    theta, omega = found["theta"], found["omega"]
+    half_turns, rest = np.divmod(theta + 0.5 * np.pi, np.pi)
+    work = np.pi * (np.ceil(half_turns / 2.0) + 0.2 * np.floor(half_turns / 2.0))
+    work += rest * np.where(half_turns % 2.0 == 0.0, 1.0, 0.2) - 0.5 * np.pi
+    energy = 0.5 * np.expand_dims(inertia, -1) * omega**2 if np.ndim(inertia) else 0.5 * inertia * omega**2
+    assert np.abs(energy - work).max() < 2e-7 * work.max()

@@ -2,36 +2,23 @@
 
 from collections.abc import Callable
 from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
-from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiler.llvm.loops import CompiledLoops
-from ..support.interrupts import finished
 from .law import Law, Rates
-from .loops import newton
-from .loops.advance import advance
-from .panel import INTEGRAL, NODES, PLACES, RUNNING, SERIES, Panel
+from .loops import newton, state
+from .loops.compiled import panels as compiled_panels
+from .panel import ENDS, INTEGRAL, NODES, PLACES, RUNNING, SERIES, Panel
 
 Array = NDArray[np.float64]
 BRIEF = 64  # panels of a call, which neither an interrupt nor a deadline stops
-TABLE = np.vstack([PLACES[None], RUNNING, INTEGRAL, SERIES[-2:]])
-_KINDS = (
-    *("f64[1]", "f64[1]", "f64[1]", "f64[2]", "f64[1]", "f64[1]", "f64[1]", "f64[2]", "f64[2]"),
-    *("f64[2]", "f64[2]", "f64[3]", "f64[3]", "f64[1]"),
-)
+TABLE = np.vstack([PLACES[None], RUNNING, INTEGRAL, SERIES[-2:], ENDS])
 _ANSWER = CFUNCTYPE(c_int64, c_void_p, c_void_p, c_int64)
 
 
-@cache
-def loops() -> CompiledLoops:
-    """The machine code of panels, compiled once a process."""
-    return finished(lambda: CompiledLoops(advance, _KINDS))
-
-
-class Limits(NamedTuple):
+class PanelLimits(NamedTuple):
     """The end of a motion, its tolerance, and the angles and speeds at which it is cut."""
 
     t_end: float
@@ -44,7 +31,7 @@ class Limits(NamedTuple):
 class Collocation:
     """Panels of one law after the other; the memory that they take while they are made."""
 
-    def __init__(self, limits: Limits, most: int) -> None:
+    def __init__(self, limits: PanelLimits, most: int) -> None:
         """Allocate the records of a call."""
         self.limits = limits
         self.rows, self.matrix = np.empty((newton.ROWS, NODES)), np.empty((2 * NODES, 2 * NODES))
@@ -72,7 +59,7 @@ class Collocation:
         cuts = self.limits.kinks, self.limits.knots
         records = self.heads[:size], self.records[:size], self.rates[:size]
         known = law_numbers, data, TABLE, self.rows, self.matrix
-        loops()(y.copy(), clock, scales, *cuts, *known, *records, count)
+        compiled_panels()(y.copy(), clock, scales, *cuts, *known, *records, count)
         del keeper
         made = int(count[0])
         if self.error is not None and (self.stops or not made):
@@ -82,7 +69,7 @@ class Collocation:
     def part_of(self, panel: Panel, h: float, top: float) -> Panel | None:
         """A panel solved again up to a part of it; None where that fails."""
         limits, none = self.limits, np.empty((0, 2))
-        self.limits = Limits(panel.start + h, limits.rtol, limits.sharp, none, none[:, 0])
+        self.limits = PanelLimits(panel.start + h, limits.rtol, limits.sharp, none, none[:, 0])
         try:
             panels, _ = self.advance(panel.law, panel.start, panel.y, h, top, panel, 1)
         except (ValueError, ArithmeticError):
@@ -104,17 +91,17 @@ class Collocation:
 
     def _numbers(self, law: Law) -> tuple[Array, Array, Any]:
         """The numbers of a law, the packed inputs of its kernel, and what must live during a call."""
-        numbers, arc = np.zeros(newton.NUMBERS), law.model.coordinate
-        numbers[newton.HALF : newton.TORQUE] = arc.half, arc.first, arc.last
+        numbers, arc = np.zeros(state.NUMBERS), law.model.coordinate
+        numbers[state.HALF : state.TORQUE] = arc.half, arc.first, arc.last
         torque, force = law.drive.torque.closed_form, law.drive.F_Y.closed_form
-        numbers[newton.RUBS] = law.rubs
+        numbers[state.RUBS] = law.rubs
         answer = _ANSWER(self._answer(law))
-        numbers[newton.ANSWER] = _address(answer)
+        numbers[state.ANSWER] = _address(answer)
         data = np.zeros(1)
         if not law.rubs and torque is not None and force is not None:
             kernel, data = law.model.kernel
-            numbers[newton.KERNEL] = kernel.code.address
-            for first, form in ((newton.TORQUE, torque), (newton.FORCE, force)):
+            numbers[state.KERNEL] = kernel.code.address
+            for first, form in ((state.TORQUE, torque), (state.FORCE, force)):
                 numbers[first : first + len(form)] = form
         return numbers, data, answer
 

@@ -25,10 +25,10 @@ from ..mechanism.messages import listed, named
 from ..support.checks import real_number
 from ..support.deadline import Deadline
 from ..support.shown import shown
+from .loops.state import CONSTANT, KLOSS, OVER_OMEGA, OVER_THETA
 from .torque_derivative import TorqueDerivative
 
 Array = NDArray[np.float64]
-CONSTANT, OVER_THETA, OVER_OMEGA, KLOSS = range(4)  # closed forms
 AHEAD = 1e-9  # rad: which piece of a table follows an angle
 AHEAD_OF_Y = 1e-6  # rad: so far from a dead centre the slider has left its position
 BEHIND = 1e-8  # of the largest speed of a motor's table: which piece of it follows a speed

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..support.deadline import Deadline
-from .collocation import BRIEF, Collocation, Limits
+from .collocation import BRIEF, Collocation, PanelLimits
+from .drive import FunctionCurve
 from .events import (
     JAMMED,
     KINK,
@@ -28,9 +29,9 @@ from .events import (
     words_of,
 )
 from .law import Contact, Law, Resting, State, law_ahead, rubbing, state_of
-from .loops.newton import TAIL
+from .loops.newton import DEVIATES, TAIL
 from .model import Model
-from .panel import NODES, SERIES, Panel, basis, resting
+from .panel import ENDS, NODES, SERIES, Panel, basis, resting
 from .result import DONE, FAILED, JAMS, REST, Event
 
 Array = NDArray[np.float64]
@@ -38,7 +39,6 @@ SAME = 1e-9  # of a panel: events so close together are one instant
 AT_LIMIT = 1e-9  # rad: so near to a limit a load on a massless slider has grown without bound
 EXACT = 0.02  # tolerances: a panel whose inside is so exact need not be solved again up to a cut
 PROBES = 2000  # instants of a motion at which loads that depend on time are compared with the panels
-DEVIATES = 30.0  # tolerances: by so much a probe differs where nodes have missed something
 SHARP = 3e-11  # of a radian: a limit angle cannot be told better
 CHATTER = 6  # standstills in a row, all within a millionth of the time
 FLOOR = 0.01  # of the root of the energy that start and loads suggest: the least size of v
@@ -78,7 +78,8 @@ class March:
         kinks = [(mark.angle, mark.every or inf) for mark in self.marks if self._ends_stretch(mark)]
         self.kinks = np.array(kinks or np.empty((0, 2)))
         self.timed = any(curve.depends_on_time for curve in model.drive)
-        limits = Limits(t_end, settings.rtol, SHARP, self.kinks, np.array(model.drive.knots, np.float64))
+        self.by_functions = any(isinstance(curve, FunctionCurve) for curve in model.drive)
+        limits = PanelLimits(t_end, settings.rtol, SHARP, self.kinks, np.array(model.drive.knots, np.float64))
         self.collocation = Collocation(limits, 1 if self.timed else BRIEF)
 
     def to_the_end(self) -> "March":
@@ -276,9 +277,27 @@ class March:
             self.deadline.check()
             panels, self.h = self.collocation.advance(law, self.t, self.y, wish, self.top, before, most)
             shorter = self._missed(panels[0]) if self.timed and panels else None
+            if shorter is None and self.by_functions and panels:
+                before_jump = self._before_jump(panels)
+                if before_jump:
+                    return panels[:before_jump]
+                shorter = None if before_jump is None else 0.5 * panels[0].h
             if shorter is None:
                 return panels
             wish = shorter
+
+    def _before_jump(self, panels: list[Panel]) -> int | None:
+        """Count the panels before the first with a jump next to an end, unseen by nodes; None without."""
+        law, starts = panels[0].law, np.array([panel.y for panel in panels])
+        ends = np.array([panel.end() for panel in panels])
+        times = np.array([(panel.start, panel.start + panel.h) for panel in panels])
+        nodes = np.array([panel.rates.v for panel in panels if panel.rates is not None])
+        y = np.concatenate([starts, ends])
+        actual = law.rates(times.T.reshape(-1), y[:, Q], y[:, V]).v.reshape(2, -1)
+        off = np.diff(times, axis=1).T * np.abs(actual - ENDS @ nodes.T)
+        size = np.maximum(self.top, np.abs(y[:, V]).reshape(2, -1).max(axis=0))
+        bad = np.flatnonzero((off > DEVIATES * TAIL * self.settings.rtol * size).any(axis=0))
+        return int(bad[0]) if bad.size else None
 
     def _missed(self, panel: Panel) -> float | None:
         """A shorter length for a panel whose nodes have missed what a load does in time; None for none."""

@@ -14,11 +14,12 @@ from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.names import CENTRES, LENGTHS
 from ..mechanism.program import Variant
-from ..runtime.executor import CompiledKernel, kernel_for
-from ..runtime.kernels import STRUCTURAL_ZEROS, KernelKey
+from ..runtime.executor import CompiledKernel
+from ..runtime.kernels import STRUCTURAL_ZEROS
 from ..support.computed import computed_once
 from .coordinate import Coordinate
 from .drive import ConstantCurve, Curve, SliderDesign
+from .loops.compiled import DesignFamily, packed
 
 Array = NDArray[np.float64]
 
@@ -61,7 +62,6 @@ class Actuation(NamedTuple):
         return Actuation(*(curve.ahead(theta, omega, direction, growing) for curve in self))
 
 
-HELD = ("omega", "alpha", "mu", "F_X", "F_Y")  # 0 in `still`
 KEPT = ("AB", "BC", *CENTRES)  # inputs that are passed where they are 0, too
 NOTHING = Actuation(ConstantCurve(0.0), ConstantCurve(0.0), ConstantCurve(0.0))
 
@@ -104,11 +104,9 @@ class Model(SliderDesign):
 
     @computed_once
     def kernel(self) -> tuple[CompiledKernel, Array]:
-        """The kernel of `still` over the angle, and its packed inputs."""
-        values = {n: v for n, v in self.values.items() if n not in HELD}
-        zeros = dict(fixed_zeros(values)) | dict.fromkeys(HELD, 0.0)
-        kernel = kernel_for(KernelKey(STILL, form_of(values), tuple(zeros.items()), (("theta", 0),), 1))
-        return kernel, np.frombuffer(kernel.data({"branch": float(self.branch), **values}))
+        """The kernel of the compiled loops, and its packed inputs."""
+        kernel = DesignFamily(form_of(self.values), fixed_zeros(self.values)).kernel()
+        return kernel, packed(kernel, {"branch": float(self.branch), **self.values}, 1)[0]
 
     def still(self, theta: Any) -> Still:
         """Inertia, gravity's torque and Y' at angles, with their slopes."""

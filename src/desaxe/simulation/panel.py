@@ -20,6 +20,7 @@ SERIES = np.linalg.inv(legendre.legvander(_X, NODES - 1))  # values at the nodes
 ONCE = legendre.legint(np.eye(NODES), lbnd=-1, axis=0) / 2.0  # series -> series of its integral
 RUNNING = legendre.legvander(_X, NODES) @ ONCE @ SERIES
 INTEGRAL = ONCE @ SERIES  # values at the nodes -> series of their integral
+ENDS = legendre.legvander(np.array([-1.0, 1.0]), NODES - 1) @ SERIES  # values at the nodes -> at both ends
 
 
 def basis(x: Array, degree: int) -> Array:

@@ -25,13 +25,14 @@ from ..support.deadline import Deadline
 from ..support.interrupts import stopped_early
 from ..support.progress import Portions, progress_bar
 from .checks import follows_the_slider, grows
+from .collocation import TABLE
 from .coordinate import arc_around, inside
 from .energy.many import NOT_HERE, follow_many
 from .energy.panels import Designs
 from .energy.serves import ENERGY, served, tables_alone
 from .history import PANELS
-from .loops import nodes, tableau
-from .loops.compiled import DesignFamily, motions
+from .loops import nodes, state
+from .loops.compiled import DesignFamily, motions, packed
 from .loops.torque import compiled
 from .model import fixed_zeros, form_of
 from .request import Ask, one_motion
@@ -44,8 +45,7 @@ SAMPLES = 101  # instants of the histories by default
 LONGEST_PART = 64  # designs in one native call, that threads share the work evenly
 BRIEF = 500.0  # pieces of motions that run at once
 LONGEST_BLOCK = 256  # the same in the energy form: its arrays stay in the cache
-MOST_STEPS = 3  # its place in `how`
-TORQUE = 4  # its place in a row of `setup`: a number, or the address of its function
+MOST_STEPS = 2  # its place in `how`
 LARGE = 1_000  # designs that may take long: a bar tells
 _UNITS = {"theta0": "rad", "omega_start": "rad/s", "torque": "N*m"}
 STARTS = {name: Input(name, unit, "") for name, unit in _UNITS.items()}
@@ -124,7 +124,7 @@ def simulate_rows(
         if isinstance(load, OverY):
             status[np.isnan(zero_of(load, [flat[n] for n in LENGTHS], ask.branch))] = NO_START
     answers = Answers(size, t, ask, status)
-    how = np.array([ask.rtol, ask.t_end, inf, ask.max_steps])
+    how = np.array([ask.rtol, ask.t_end, ask.max_steps])
     together = not (ask.until or ask.wrt or np.any(arrays["mu"]))
     over_angles = together and tables_alone(varying, 0.0)
     if over_angles:
@@ -208,20 +208,23 @@ def _in_lanes(
     scalars = {n: float(array) if array.ndim == 0 else array for n, array in arrays.items() if n != "mu"}
     family = DesignFamily(form_of({n: flat[n] for n in CENTRES if n in flat}), fixed_zeros(scalars))
     left = np.flatnonzero(answers.status < 0)
-    kernel = family.kernel()
-    rows = family.rows(kernel, {name: column[left] for name, column in flat.items()}, ask.branch)
-    setup[:, TORQUE] = code.address
-    starts = np.append(setup[left], np.full((left.size, 1), kernel.code.address), axis=1)
-    own = (
-        *(answers.histories[n][left] for n in MOTION), answers.status[left], np.full((left.size, 5), nan)
-    )  # fmt: skip
-    _run(rows, starts, (answers.t, np.append(how, 1.0)), own, threads, ask.deadline)
-    for name, part in zip(MOTION, own, strict=False):
-        answers.histories[name][left] = part
-    answers.status[left] = own[3]
-    numbers = np.full((answers.size, 5), nan)
-    numbers[left] = own[4]
-    answers.told(PANELS, left[own[3] != NO_START], numbers)
+    kernel, rows = family.kernel(), setup[left]
+    inputs = {name: column[left] for name, column in flat.items()}
+    data = packed(kernel, {"branch": float(ask.branch), **inputs}, left.size)
+    law = np.zeros((left.size, state.ENERGY + 1))
+    law[:, state.KERNEL], law[:, state.HALF] = kernel.code.address, rows[:, 3]
+    law[:, state.FIRST], law[:, state.LAST] = rows[:, 1], rows[:, 2]
+    law[:, state.TORQUE], law[:, state.TORQUE + 1] = state.FUNCTION, code.address
+    law[:, state.FORCE + 1], law[:, state.THETA0 :] = rows[:, 5], rows[:, 6:]
+    histories = np.empty((left.size, len(MOTION), answers.t.size))
+    outs = histories, answers.status[left], np.full((left.size, 4), nan)
+    _run(law, data, answers.t, how, outs, threads, ask.deadline)
+    for k, name in enumerate(MOTION):
+        answers.histories[name][left] = histories[:, k]
+    answers.status[left] = outs[1]
+    numbers = np.full((answers.size, 4), nan)
+    numbers[left] = outs[2]
+    answers.told(PANELS, left[outs[1] != NO_START], numbers)
 
 
 def arrays_of(
@@ -279,27 +282,24 @@ def _arc(values: Mapping[str, float]) -> tuple[float, float, float] | None:
 
 
 def _run(
-    rows: Array,
-    setup: Array,
-    shared: Sequence[Array],
+    law: Array,
+    data: Array,
+    t: Array,
+    how: Array,
     outs: Sequence[Any],
     threads: int | None,
     deadline: Deadline,
 ) -> None:
     """Follow blocks of designs; designs are independent, so blocks do not change results."""
-    A, C, last = tableau.A, tableau.C, tableau.STAGES
-    step = A[:last, :last].copy(), tableau.B, C[:last].copy(), tableau.E3, tableau.E5
-    tables = (*step, tableau.D, A[last + 1 :].copy(), C[last + 1 :].copy(), nodes.table())
+    limits, kernel, tables = how.copy(), motions(), (TABLE, nodes.table())
 
-    how, size, kernel = shared[1], len(setup), motions()
-
-    def stop() -> None:  # the kernel looks at the most steps before each one
-        how[MOST_STEPS] = 0.0
+    def stop() -> None:  # the loops look at the most steps before each one
+        limits[MOST_STEPS] = 0.0
 
     def block(a: int, b: int) -> None:
-        kernel(rows[a:b], setup[a:b], *shared, *tables, *(out[a:b] for out in outs))
+        kernel(law[a:b], data[a:b], t, limits, *tables, *(out[a:b] for out in outs))
 
-    _in_parts(block, stop, size, LONGEST_PART, threads, deadline)
+    _in_parts(block, stop, len(law), LONGEST_PART, threads, deadline)
 
 
 def _in_parts(

@@ -17,19 +17,19 @@ from numpy import empty, nextafter
 from .newton import (
     ANGLE,
     CURVED,
-    FIRST,
-    HALF,
-    LAST,
+    DEVIATES,
+    ENDS,
     RATE_Q,
     RATE_V,
-    RUBS,
     SPEED,
     STOP,
     TAIL,
     TIME,
     law_at,
     newton,
-)
+    product,
+)  # fmt: skip
+from .state import FIRST, FUNCTION, HALF, LAST, RUBS, TORQUE
 
 if TYPE_CHECKING:
     from typing import Any
@@ -166,6 +166,23 @@ def may_cut(y: Any, end: Any, law: Any, kinks: Any, knots: Any, rows: Any, serie
     return found
 
 
+def jumps(
+    t: float, h: float, y: Any, scales: Any, law: Any, data: Any, table: Any, rows: Any, series: Any
+) -> bool:  # fmt: skip
+    """True where a function jumps between an end of a panel and the node next to it, which no node sees."""
+    still, end = empty(32), empty(3)
+    first, last = product(table[ENDS], rows[RATE_V]), product(table[ENDS + 1], rows[RATE_V])
+    for k in range(3):
+        end[k] = value(series[k], y[k], 1.0)
+    if motion(t, y, law, data, rows, still) != 0:
+        return True
+    first -= rows[RATE_V, 0]
+    if motion(t + h, end, law, data, rows, still) != 0:
+        return True
+    worst = max(abs(first), abs(last - rows[RATE_V, 0]))
+    return bool(h * worst > DEVIATES * TAIL * scales[0] * scales[2])
+
+
 def keep(head: Any, t: float, h: float, error: float, y: Any) -> None:
     """Record a panel's start, length, error and state."""
     head[0], head[1], head[2], head[3], head[4], head[5] = t, h, error, y[0], y[1], y[2]
@@ -207,6 +224,9 @@ def one(
         if law[HALF] > 0.0 and blurs(error, h, y, law, clock, scales[0], series):
             h *= 0.5
             continue
+        if law[TORQUE] == FUNCTION and jumps(t, h, y, scales, law, data, table, rows, series):
+            h *= 0.5
+            continue
         grown = h * min(GROWTH, max(factor, 0.5))
         clock[WISH] = max(grown, wish) if h == limited else grown
         keep(head, t, h, error, y)
@@ -235,8 +255,9 @@ def advance(
             break
         made += 1
         for i in range(16):
-            for k in range(4):
+            for k in range(3):
                 rates[made, k, i] = rows[RATE_Q + k, i]
+            rates[made, 3, i] = rows[SPEED, i]
         end: Any = empty(3)
         for k in range(3):
             end[k] = value(series[k], y[k], 1.0)

@@ -1,4 +1,4 @@
-"""The loops over many designs as machine code, and the kernel of a family of designs that they call."""
+"""The loops over panels and designs as machine code, and the kernel of a family of designs that they call."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -12,14 +12,22 @@ from ...mechanism.program import Variant
 from ...runtime.executor import CompiledKernel, kernel_for
 from ...runtime.kernels import KernelKey
 from ...support.interrupts import finished
+from .advance import advance
 from .motions import designs
 
 Array = NDArray[np.float64]
-NAMES = ("M_eff", "T_in", "Y_wrt_theta", "M_eff_wrt_theta", "potential_energy")  # see `state`
+NAMES = (  # see `state`
+    *("M_eff", "M_eff_wrt_theta", "T_in", "T_in_wrt_theta", "Y_wrt_theta", "Y_wrt_theta_theta"),
+    "potential_energy",
+)
 UNLOADED = ("omega", "alpha", "mu", "F_X", "F_Y")
-_KINDS = (
-    *("f64[3]", "f64[2]", "f64[1]", "f64[1]", "f64[2]", "f64[1]", "f64[1]", "f64[1]", "f64[1]", "f64[2]"),
-    *("f64[2]", "f64[1]", "f64[2]", "f64[2]", "f64[2]", "f64[2]", "i8[1]", "f64[2]"),
+_PANELS = (
+    *("f64[1]", "f64[1]", "f64[1]", "f64[2]", "f64[1]", "f64[1]", "f64[1]", "f64[2]", "f64[2]"),
+    *("f64[2]", "f64[2]", "f64[3]", "f64[3]", "f64[1]"),
+)
+_MOTIONS = (
+    *("f64[2]", "f64[2]", "f64[1]", "f64[1]", "f64[2]", "f64[2]", "f64[3]", "i8[1]"),
+    "f64[2]",
 )
 
 
@@ -34,19 +42,23 @@ class DesignFamily(NamedTuple):
         fixed = dict(self.fixed) | dict.fromkeys(UNLOADED, 0.0)
         return kernel_for(KernelKey(NAMES, self.form, tuple(fixed.items()), (("theta", 0),), 1))
 
-    def rows(self, kernel: CompiledKernel, inputs: Mapping[str, Any], branch: int) -> Array:
-        """The packed inputs of designs, on their branch and on the other one."""
-        first = np.frombuffer(kernel.data(dict.fromkeys(kernel.scalars, 0.0)))
-        size = max((np.size(inputs[name]) for name in kernel.scalars if name in inputs), default=1)
-        rows = np.empty((size, 2, first.size))
-        rows[:, :] = first
-        for at, name in enumerate(kernel.scalars, first.size - len(kernel.scalars)):
-            for k, side in enumerate((branch, -branch)):
-                rows[:, k, at] = side if name == "branch" else inputs[name]
-        return rows
+
+def packed(kernel: CompiledKernel, inputs: Mapping[str, Any], size: int) -> Array:
+    """The packed inputs of designs, numbers or arrays, a row for each."""
+    first = np.frombuffer(kernel.data(dict.fromkeys(kernel.scalars, 0.0)))
+    rows = np.tile(first, (size, 1))
+    for column, name in enumerate(kernel.scalars, first.size - len(kernel.scalars)):
+        rows[:, column] = inputs[name]
+    return rows
+
+
+@cache
+def panels() -> CompiledLoops:
+    """The machine code of panels of one motion, compiled once a process."""
+    return finished(lambda: CompiledLoops(advance, _PANELS))
 
 
 @cache
 def motions() -> CompiledLoops:
-    """The machine code of motions, compiled once a process."""
-    return finished(lambda: CompiledLoops(designs, _KINDS))
+    """The machine code of many motions, compiled once a process."""
+    return finished(lambda: CompiledLoops(designs, _MOTIONS))

@@ -8,12 +8,13 @@ from __future__ import annotations
 from math import copysign, inf, sqrt
 from typing import TYPE_CHECKING
 
-from numpy import int64
+from numpy import empty, int64
 
-from .dop853 import NEXT, STALE, T_END, WISHED
+from .advance import motion
+from .newton import RATE_Q, ROWS
 from .panel import WAIT, panel
 from .picard import NODES, OF_ENERGY, OF_TIME, PACE, RATE, SERIES
-from .state import rates, tell
+from .state import tell
 
 if TYPE_CHECKING:
     from typing import Any
@@ -61,13 +62,12 @@ def land(
     end: float,
     t_end: float,
     y: Any,
-    p: Any,
-    setup: Any,
+    law: Any,
+    data: Any,
     rtol: float,
     panels: Any,
     room: Any,
     memory: Any,
-    K: Any,
     new: Any,
 ) -> float:
     """Make the series of a panel, shortened where it goes beyond the end of the motion; its end.
@@ -79,12 +79,13 @@ def land(
     if end > t_end:
         part = part_at(t_end, (t_end - t) / (end - t), room)
         memory[3] = width * (part * part if y[1] == 0.0 else part)
-        end, _ = panel(t, y, memory[3], p, setup, rtol, inf, panels, room, new)
+        end, _ = panel(t, y, memory[3], law, data, rtol, inf, panels, room, new)
         if not end > t:
             return t
-        rates(end, new, p, setup, K[1])
-        for i in range(3):
-            new[i] += (t_end - end) * K[1, i]
+        rows, still = empty((ROWS, 16)), empty(32)
+        if motion(end, new, law, data, rows, still) == 0:
+            for i in range(3):
+                new[i] += (t_end - end) * rows[RATE_Q + i, 0]
         expand(t, abs(memory[3]), panels, room, int64(PACE), int64(OF_TIME))
         end = t_end
     expand(0.5 * y[1] * y[1], memory[3], panels, room, int64(RATE), int64(OF_ENERGY))
@@ -96,13 +97,11 @@ def tell_inside(
     end: float,
     instant: float,
     y: Any,
-    p: Any,
-    setup: Any,
+    law: Any,
+    data: Any,
     room: Any,
     memory: Any,
-    theta: Any,
-    omega: Any,
-    alpha: Any,
+    history: Any,
     row: Any,
 ) -> None:
     """Angle, speed and acceleration at an instant inside of a panel, into the histories."""
@@ -110,7 +109,7 @@ def tell_inside(
     energy, _ = along(x, room, int64(OF_ENERGY))
     speed = copysign(sqrt(2.0 * max(energy, 0.0)), memory[3])
     way = memory[3] * (x * x if y[1] == 0.0 else x)
-    tell(instant, y[0] + way, speed, p, setup, theta, omega, alpha, row)
+    tell(instant, y[0] + way, speed, law, data, history, row)
 
 
 def over_panel(
@@ -120,29 +119,24 @@ def over_panel(
     new: Any,
     times: Any,
     row: Any,
-    p: Any,
-    setup: Any,
+    law: Any,
+    data: Any,
     how: Any,
-    clock: Any,
     panels: Any,
     room: Any,
     memory: Any,
-    K: Any,
-    theta: Any,
-    omega: Any,
-    alpha: Any,
+    history: Any,
 ) -> Any:
     """The histories inside of a panel, and its end, which is not behind that of the motion; the next row.
 
     Its end is its start where steps in time go on.
     """
-    if end > clock[T_END] or (row < len(times) and times[row] <= end):
-        end = land(t, end, clock[T_END], y, p, setup, how[0], panels, room, memory, K, new)
+    if end > how[1] or (row < len(times) and times[row] <= end):
+        end = land(t, end, how[1], y, law, data, how[0], panels, room, memory, new)
     if not end > t:
         memory[1] = WAIT
         return end, row
     while row < len(times) and times[row] <= end:
-        tell_inside(t, end, times[row], y, p, setup, room, memory, theta, omega, alpha, row)
+        tell_inside(t, end, times[row], y, law, data, room, memory, history, row)
         row += 1
-    clock[NEXT], clock[WISHED], clock[STALE] = 0.1 * (end - t), inf, 1.0
     return end, row

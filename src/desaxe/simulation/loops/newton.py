@@ -2,13 +2,10 @@
 
 The matrix is made at the first guess, and again only where the iteration is slow.
 
-law      numbers: addresses of the executor's kernel (0 where the law has no closed form) and of the function
-         that answers otherwise, half of the arc (see `coordinate`), limit angles; TORQUE and FORCE: kind and
-         coefficients of the piece (see `closed_form` of a curve); 1 where friction may change at any time
-data     the packed inputs of the kernel
 state    q at the nodes, then v
-rows     values at the nodes, in the order below; the first six are the kernel's
-table    places of the nodes; running integrals; the series of an integral; the last two terms of a series
+rows     values at the nodes, in the order below, behind those of the kernel (see `state`)
+table    places of the nodes; running integrals; the series of an integral; the last two terms of a series;
+         values at both ends
 scales   relative tolerance, largest |v| so far, the latter with this panel
 """
 
@@ -17,41 +14,88 @@ from __future__ import annotations
 from math import cos, inf, nan, pi, sin, sqrt
 from typing import TYPE_CHECKING
 
-from numpy import empty, int64, zeros
+from numpy import empty, int64
 
-from ...compiler.llvm.loops import address, apart, call
-from .state import reduced
+from ...compiler.llvm.loops import apart, call
+from .state import (
+    ANSWER,
+    BEND,
+    CONSTANT,
+    EDGE,
+    FIRST,
+    FORCE,
+    FUNCTION,
+    GRAVITY,
+    GRAVITY_SLOPE,
+    HALF,
+    INERTIA,
+    INERTIA_SLOPE,
+    KERNEL,
+    KLOSS,
+    LAST,
+    OUTPUTS,
+    OVER_OMEGA,
+    OVER_THETA,
+    RUBS,
+    TORQUE,
+    TRAVEL,
+    quantities,
+    reduced,
+)  # fmt: skip
 
 if TYPE_CHECKING:
     from typing import Any
 
-KERNEL, ANSWER, HALF, FIRST, LAST, TORQUE, FORCE, RUBS, NUMBERS = 0, 1, 2, 3, 4, 5, 12, 19, 20
-INERTIA, INERTIA_SLOPE, GRAVITY, GRAVITY_SLOPE, TRAVEL, BEND = range(6)
-TIME, ANGLE, SLOPE, RATE_Q, RATE_V, RATE_W, SPEED = range(6, 13)
-Q_BY_Q, Q_BY_V, V_BY_Q, V_BY_V, CURVED, ROWS = range(13, 19)
-RUNNING, SERIES, TAILS = 1, 17, 34  # rows of the table
+TIME, ANGLE, SPEED, TURNED = range(OUTPUTS, OUTPUTS + 4)  # as a compiled torque takes them
+SLOPE, RATE_Q, RATE_V, RATE_W, Q_BY_Q, Q_BY_V, V_BY_Q, V_BY_V, CURVED, BY_THETA, BY_OMEGA, ROWS = range(
+    OUTPUTS + 4, OUTPUTS + 16
+)
+RUNNING, SERIES, TAILS, ENDS = 1, 17, 34, 36  # rows of the table
 NONE, STOP = 1, 2  # the law has no value; an exception ends the motion
-EDGE = 1e-13  # rad: see `coordinate`
 ITERATIONS = 14
 SLOW = 0.1  # of the step before: then the matrix is made anew
 BLUR = 4e-16  # over cos(q)^2: the rounding of the rates next to a limit angle
 ROUNDING = 4e-15  # of the size of a coordinate
+DEVIATES = 30.0  # tolerances: by so much a rate differs where nodes have missed a jump
 TAIL = 30.0  # tolerances: the last terms of the rates, over the panel; its inside is far more exact
+STEP = 1e-7  # of an angle or a speed: a difference has seven digits
 
 
 def piece(c: Any, theta: float, omega: float) -> Any:
     """A torque or force, and its derivatives by theta and omega."""
-    if c[0] == 0.0:
+    if c[0] == CONSTANT:
         return c[1], 0.0, 0.0
-    if c[0] == 3.0:  # Kloss's formula
+    if c[0] == KLOSS:
         u = (1.0 - c[4] * omega / c[3]) / c[2]
         square = u * u
         bend = 2.0 * (1.0 - square) / ((1.0 + square) * (1.0 + square))
         return c[1] * 2.0 * u / (1.0 + square), 0.0, c[1] * bend * (-c[4] / (c[3] * c[2]))
-    s = (theta if c[0] == 1.0 else omega) - c[1]
+    s = (theta if c[0] == OVER_THETA else omega) - c[1]
     value = c[2] + s * (c[3] + s * (c[4] + s * c[5]))
     slope = c[3] + s * (2.0 * c[4] + s * (3.0 * c[5]))
-    return value, slope if c[0] == 1.0 else 0.0, slope if c[0] == 2.0 else 0.0
+    return value, slope if c[0] == OVER_THETA else 0.0, slope if c[0] == OVER_OMEGA else 0.0
+
+
+def function_at(law: Any, rows: Any, slopes: Any) -> int:
+    """The torque of a compiled function at the nodes, and its differences if asked for."""
+    function = int64(law[TORQUE + 1])
+    code = call(function, rows[TIME], 16, 16)
+    if code != 0 or slopes == 0:
+        return code
+    moved: Any = empty((4, 16))
+    for k in range(2):
+        step = STEP
+        if k == 1:
+            for i in range(16):
+                step = max(step, STEP * abs(rows[SPEED, i]))
+        for i in range(16):
+            moved[0, i], moved[1, i], moved[2, i] = rows[TIME, i], rows[ANGLE, i], rows[SPEED, i]
+            moved[1 + k, i] += step
+        if call(function, moved[0], 16, 16) != 0:
+            return NONE
+        for i in range(16):
+            rows[BY_THETA + k, i] = (moved[3, i] - rows[TURNED, i]) / step
+    return 0
 
 
 def places(state: Any, law: Any, rows: Any) -> None:
@@ -67,45 +111,51 @@ def places(state: Any, law: Any, rows: Any) -> None:
             rows[SLOPE, i] = 1.0
 
 
-def mechanism(law: Any, data: Any, rows: Any) -> int:
-    """Fill in what depends on the angle alone; not 0 where the kernel leaves a point to its caller."""
-    words: Any = zeros(17, int64)
-    angles: Any = empty(16)
+def torques(law: Any, rows: Any, slopes: Any) -> int:
+    """The torque at the nodes, of a closed form or a compiled function, with its derivatives."""
+    if law[TORQUE] == FUNCTION:
+        return function_at(law, rows, slopes)
     for i in range(16):
-        angles[i] = reduced(rows[ANGLE, i])
-    words[0], words[7] = address(angles), 16
-    for k in range(6):
-        words[1 + k] = address(rows[k])
-    for k in range(7):
-        words[8 + k] = 8
-    return call(int64(law[KERNEL]), words, words[7:], words[8:], data)
+        value, by_theta, by_omega = piece(law[TORQUE:FORCE], rows[ANGLE, i], rows[SPEED, i])
+        rows[TURNED, i], rows[BY_THETA, i], rows[BY_OMEGA, i] = value, by_theta, by_omega
+    return 0
 
 
 def law_at(state: Any, law: Any, data: Any, rows: Any, slopes: Any) -> int:
     """The rates at the nodes, and their derivatives if asked for; TIME is known."""
     if law[KERNEL] == 0.0:
         return call(int64(law[ANSWER]), state, rows, slopes)
+    angles: Any = empty(16)
     places(state, law, rows)
-    if mechanism(law, data, rows) != 0:
-        return call(int64(law[ANSWER]), state, rows, slopes)
-    half, torque, force = law[HALF], law[TORQUE:FORCE], law[FORCE:RUBS]
     for i in range(16):
-        theta, slope, inertia, travel = rows[ANGLE, i], rows[SLOPE, i], rows[INERTIA, i], rows[TRAVEL, i]
+        angles[i] = reduced(rows[ANGLE, i])
+    if quantities(angles, law, data, rows) != 0 and law[ANSWER] != 0.0:
+        return call(int64(law[ANSWER]), state, rows, slopes)
+    for i in range(16):
+        rows[SPEED, i] = state[16 + i] / (sqrt(rows[INERTIA, i]) if rows[INERTIA, i] >= 0.0 else nan)
+    code = torques(law, rows, slopes)
+    if code == 0:
+        fill_rates(state, law, rows)
+    return code
+
+
+def fill_rates(state: Any, law: Any, rows: Any) -> None:
+    """The rates at the nodes and their derivatives, from inertia, torque and force."""
+    half = law[HALF]
+    for i in range(16):
+        slope, inertia, travel, omega = rows[SLOPE, i], rows[INERTIA, i], rows[TRAVEL, i], rows[SPEED, i]
         root = sqrt(inertia) if inertia >= 0.0 else nan
-        omega = state[16 + i] / root
-        turned, turned_theta, turned_omega = piece(torque, theta, omega)
-        pushed, pushed_theta, pushed_omega = piece(force, theta, omega)
-        push = turned + pushed * travel
+        pushed, pushed_theta, pushed_omega = piece(law[FORCE:RUBS], rows[ANGLE, i], omega)
+        push = rows[TURNED, i] + pushed * travel
         speed, left = omega / slope, push - rows[GRAVITY, i]
-        by_theta = turned_theta + pushed_theta * travel + pushed * rows[BEND, i] - rows[GRAVITY_SLOPE, i]
-        by_omega = turned_omega + pushed_omega * travel
+        by_theta = rows[BY_THETA, i] + pushed_theta * travel + pushed * rows[BEND, i] - rows[GRAVITY_SLOPE, i]
+        by_omega = rows[BY_OMEGA, i] + pushed_omega * travel
         steeper = 0.5 * rows[INERTIA_SLOPE, i] / inertia
         rows[RATE_Q, i], rows[RATE_V, i], rows[RATE_W, i] = speed, left / root, push * omega
-        rows[SPEED, i], rows[CURVED, i] = omega, left / root / (root * slope)
+        rows[CURVED, i] = left / root / (root * slope)
         rows[Q_BY_Q, i] = -omega * steeper + (speed * sin(state[i]) / cos(state[i]) if half > 0.0 else 0.0)
         rows[Q_BY_V, i], rows[V_BY_V, i] = 1.0 / (root * slope), by_omega / inertia
         rows[V_BY_Q, i] = (by_theta - by_omega * omega * steeper - left * steeper) / root * slope
-    return 0
 
 
 def product(row: Any, values: Any) -> float:

@@ -80,8 +80,8 @@ def panel(
     t: float,
     y: Any,
     width: float,
-    p: Any,
-    setup: Any,
+    law: Any,
+    data: Any,
     rtol: float,
     too_wide: float,
     table: Any,
@@ -94,18 +94,18 @@ def panel(
     """
     energy = 0.5 * y[1] * y[1]
     furnish(energy == 0.0, table, room)
-    still_at_nodes(y[0], width, p, setup, room)
+    still_at_nodes(y[0], width, law, data, room)
     begin = copysign(sqrt(2.0 * energy * room[MOBILITY, 0]), width)
-    first = torque(t, y[0], begin, setup[4])
+    first = torque(t, y[0], begin, law)
     guess(t, energy, first, width, room)
-    ask(setup[4], room)
+    ask(law, room)
     least = course(t, energy, width, table, room)
     if not least > 0.0:
         return t, inf
     error = error_inside(width, least, table, room) / (INSIDE * rtol)
     if not error < too_wide:  # the torque will not mend that
         return t, error
-    least = sweep(t, energy, least, width, setup[4], rtol, table, room)
+    least = sweep(t, energy, least, width, law, rtol, table, room)
     if not least > 0.0:
         return t, inf
     gain, work, time = sums(table, room)
@@ -117,7 +117,7 @@ def panel(
     new[2] = y[2] + width * work
     end = t + abs(width) * time
     omega = copysign(1.0 / room[SLOWNESS, 15], width)
-    last = torque(end, new[0], omega, setup[4])
+    last = torque(end, new[0], omega, law)
     if jumps(first, room, 0, 1) or jumps(last, room, 15, -1):
         return end, inf
     return end, error_inside(width, least, table, room) / (INSIDE * rtol)
@@ -127,8 +127,8 @@ def by_panel(
     t: float,
     y: Any,
     push: float,
-    p: Any,
-    setup: Any,
+    law: Any,
+    data: Any,
     how: Any,
     table: Any,
     room: Any,
@@ -139,16 +139,16 @@ def by_panel(
     if memory[1] > 0.0 or abs(y[0]) > FAR:
         memory[0], memory[1] = max(0.5, 3.0 * memory[2]), memory[1] - 1.0
         return -1.0
-    longest, width, way = how[2], memory[0], y[1] if y[1] != 0.0 else push
+    width, way = memory[0], y[1] if y[1] != 0.0 else push
     for _ in range(TRIALS):
         if width < max(LEAST, 1.5 * memory[2]) or way == 0.0:
             break
         memory[3] = copysign(width, way)
-        end, error = panel(t, y, memory[3], p, setup, how[0], TOO_WIDE, table, room, new)
+        end, error = panel(t, y, memory[3], law, data, how[0], TOO_WIDE, table, room, new)
         factor = min(2.0, max(0.25, (AIM / error) ** 0.0625)) if error > 0.0 else 2.0
-        if error <= 1.0 and end - t <= longest:
+        if error <= 1.0:
             memory[0] = min(width * factor, WIDEST)
             return float(end)
-        width *= min(factor, 0.8) if error > 1.0 else 0.9 * longest / (end - t)
+        width *= min(factor, 0.8)
     memory[1] = WAIT
     return -1.0

@@ -26,7 +26,8 @@ from numpy import empty, int64
 
 from ...compiler.helpers import mul_add
 from ...compiler.llvm.loops import apart, call
-from .state import GRAVITY, INERTIA, TRAVEL, quantities, reduced, torque
+from .state import FORCE, GRAVITY, INERTIA, OUTPUTS, TRAVEL, quantities, reduced, torque
+from .state import TORQUE as TORQUE_OF
 
 if TYPE_CHECKING:
     from typing import Any
@@ -38,6 +39,7 @@ OF_TIME, OF_ENERGY, PLACES, STRETCH, DEPTH, PACE, ROWS = 14, 15, 16, 17, 18, 19,
 SERIES, PLACE, SHARE, LAST = 16, 33, 34, 35  # columns of the table, behind the integrals
 USUAL, FROM_REST = int64(0), int64(16)  # rows of the table
 SWEEPS = int64(24)
+PUSHED = TORQUE_OF + 1  # of a law: the address of its torque
 
 
 def furnish(rest: bool, table: Any, room: Any) -> None:
@@ -49,17 +51,17 @@ def furnish(rest: bool, table: Any, room: Any) -> None:
         room[DEPTH, i] = 1.0 / (s * s) if rest else 1.0
 
 
-def still_at_nodes(theta: float, width: float, p: Any, setup: Any, room: Any) -> None:
+def still_at_nodes(theta: float, width: float, law: Any, data: Any, room: Any) -> None:
     """Inertia, loads and gravity, which depend on the angle alone."""
-    law: Any = empty((6, 16))
+    found: Any = empty((OUTPUTS + 1, 16))
     for i in range(NODES):
         room[ANGLE, i] = theta + width * room[PLACES, i]
-        law[5, i] = reduced(room[ANGLE, i])
-    quantities(law[5], 1.0, p, setup, law)
+        found[OUTPUTS, i] = reduced(room[ANGLE, i])
+    quantities(found[OUTPUTS], law, data, found)
     for i in range(NODES):
-        room[MOBILITY, i] = 1.0 / law[INERTIA, i]
-        room[LOAD, i] = setup[5] * law[TRAVEL, i] * room[STRETCH, i]
-        room[WEIGHT, i] = law[GRAVITY, i] * room[STRETCH, i]
+        room[MOBILITY, i] = 1.0 / found[INERTIA, i]
+        room[LOAD, i] = law[FORCE + 1] * found[TRAVEL, i] * room[STRETCH, i]
+        room[WEIGHT, i] = found[GRAVITY, i] * room[STRETCH, i]
 
 
 def integrate(start: float, width: float, table: Any, kind: Any, room: Any, rate: Any, out: Any) -> None:
@@ -123,9 +125,9 @@ def course(t: float, energy: float, width: float, table: Any, room: Any) -> floa
     return least
 
 
-def ask(number: float, room: Any) -> float:
+def ask(law: Any, room: Any) -> float:
     """The torque at all nodes; by how much it has changed at most, NaN where it is none."""
-    if call(int64(number), room[TIME], room.shape[1], NODES) != 0:
+    if call(int64(law[PUSHED]), room[TIME], room.shape[1], NODES) != 0:
         return nan
     differ(room)
     most, none = 0.0, 0.0
@@ -145,11 +147,11 @@ def differ(room: Any) -> None:
         room[TORQUE, i] = now
 
 
-def bend_of(number: float, room: Any) -> float:
+def bend_of(law: Any, room: Any) -> float:
     """The derivative of the torque by the speed in the middle of a panel, for the corrections alone."""
     t, angle, omega = room[TIME, 8], room[ANGLE, 8], room[SPEED, 8]
     step = 1e-4 * omega
-    return float((torque(t, angle, omega + step, number) - torque(t, angle, omega, number)) / step)
+    return float((torque(t, angle, omega + step, law) - torque(t, angle, omega, law)) / step)
 
 
 def correct(bend: float, width: float, table: Any, room: Any) -> None:
@@ -177,15 +179,15 @@ def respond(bend: float, room: Any) -> None:
 
 
 def sweep(
-    t: float, energy: float, least: float, width: float, number: float, rtol: float, table: Any, room: Any
+    t: float, energy: float, least: float, width: float, law: Any, rtol: float, table: Any, room: Any
 ) -> float:
     """Sweeps until the torque stays as it is: the least energy at the nodes; 0 where that fails."""
     before = inf
-    bend = copysign(1.0, width) * bend_of(number, room)
+    bend = copysign(1.0, width) * bend_of(law, room)
     for _ in range(SWEEPS):
         if not least > 0.0:
             return 0.0
-        change = ask(number, room) * abs(width) / least
+        change = ask(law, room) * abs(width) / least
         if not change < 0.7 * before:
             return least if change < max(1e-15, 0.01 * rtol) else 0.0
         if change > 0.0:
