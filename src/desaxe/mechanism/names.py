@@ -5,6 +5,7 @@ taken apart and put together here and nowhere else.
 """
 
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ..support.forks import IMPORTS
@@ -44,6 +45,7 @@ RANK = {name: place for place, name in enumerate(ORDER)}
 _JOINT = "_wrt_"
 
 
+@lru_cache(maxsize=4096)
 def parts(name: str) -> tuple[str, tuple[str, ...]]:
     """The quantity and the parameters of a name: `("a_C", ("ec", "BC"))`.
 

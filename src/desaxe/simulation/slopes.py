@@ -25,7 +25,7 @@ from .tangents import STARTS, Tangents
 
 Array = NDArray[np.float64]
 BARELY = 1e-30  # rad/s: turning, for friction; without an effect of its own
-RESOLVED = 1e-9  # of a series: its last terms, at most
+RESOLVED = 1e-8  # of a series: its last terms, at most
 LEAST = 1e-12  # of a column's largest coefficient: a panel with less need not resolve it
 AT_ONCE = 1000  # panels whose matrices are in memory
 HALVINGS = 10  # of a panel of the motion, at most
@@ -268,7 +268,7 @@ def add_slopes(result: Simulation, run: March, wrt: Sequence[str], inputs: Mappi
         of_events = slopes.of_events()
         ended = slopes.of_end(of_events)
         work = slopes.of_work(ended)
-        theta, omega = slopes.histories(t, *Motion.of(run).at(t)[1][:2])
+        theta, omega = slopes.histories(t, *slopes.motion.at(t)[1][:2])
         if slopes.ends_at_limit:
             omega[:, t >= run.t] = -result["alpha"][t >= run.t] * ended[:, None]
     for k, p in enumerate(wrt):
