@@ -1,93 +1,32 @@
-"""The content of a scene, checked and in SI units."""
+"""The content of a scene: its machine and a list of requests, checked and in SI units."""
 
-from collections.abc import Mapping
+from dataclasses import dataclass
 from hashlib import sha256
-from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
-from ..evaluation.reductions.argument import Reduction, Reductions
+from ..evaluation.reductions.argument import Reduction
 from ..loads.load import Load
 from ..mechanism.own import Definition
-from ..mechanism.quantity_units import SI, UnitSystem
-from .reading.printed import Printed
-from .reading.values import Value
+from .parts.checks import Check
+from .parts.extremes import Peak, group_names
+from .parts.motor import OnMotor
+from .parts.pictures import PictureRequest
+from .setting import PlanRow, Setting
 
 
-class Check(NamedTuple):
-    """A printed value, and the inputs for the computed one."""
+@dataclass(frozen=True, kw_only=True)
+class Content(Setting):
+    """The machine, the requests beside its grid, and where results go."""
 
-    title: str
-    source: str
-    quantity: str
-    printed: Printed
-    inputs: dict[str, Any]
-
-
-class Claim(NamedTuple):
-    """A claim about the peak of one design: its increase over the baseline."""
-
-    source: str
-    at: dict[str, float]
-    design: dict[str, float]
-    increase: Printed
-
-
-class Peak(NamedTuple):
-    """A peak over the crank angle, for the outer product of `axes` with everything else fixed."""
-
-    title: str
-    quantity: str
-    kind: str
-    axes: dict[str, tuple[float, ...]]
-    fixed: dict[str, float]
-    theta: tuple[float, float]
-    at_baseline: dict[str, float]
-    baseline: dict[str, float]
-    claims: tuple[Claim, ...]
-    sensitivities: tuple[str, ...]
-    loads: Mapping[str, Load] = MappingProxyType({})  # that vary with the motion
-
-
-class PictureRequest(NamedTuple):
-    """A family of curves and the file it goes to."""
-
-    title: str
-    file: str
-    quantity: str
-    over: str
-    family: str | None
-    inputs: dict[str, Value]
-
-
-class OnMotor(NamedTuple):
-    """The steady states on a motor, for the outer product of `axes` with everything else fixed."""
-
-    torque: Any
-    axes: dict[str, tuple[float, ...]]
-    fixed: dict[str, Value]
-    seeks: bool  # the flywheel for a fluctuation
-
-
-class Content(NamedTuple):
-    """The content of a scene in SI units, its inputs in the order of the file."""
-
-    title: str
-    outputs: tuple[str, ...]
-    accuracy: str
-    branch: int
-    inputs: dict[str, Value]
-    checks: tuple[Check, ...]
-    peaks: tuple[Peak, ...]
-    pictures: tuple[PictureRequest, ...]
-    data: str | None
-    reduction: Reductions | None = None
-    threads: int | None = None
-    units: UnitSystem = SI
+    checks: tuple[Check, ...] = ()
+    peaks: tuple[Peak, ...] = ()
+    pictures: tuple[PictureRequest, ...] = ()
+    steady: OnMotor | None = None
+    data: str | None = None
     store: str | None = None
     chunks: Any = None
     memory: int | None = None
     definitions: tuple[Definition, ...] = ()
-    steady: OnMotor | None = None
 
     @property
     def digest(self) -> str:
@@ -99,3 +38,16 @@ class Content(NamedTuple):
     def fused(self) -> Reduction | None:
         """The reduction, where a kernel takes it without storing the grid."""
         return None if self.reduction is None else self.reduction.alone
+
+    @property
+    def work(self) -> list[PlanRow]:
+        """The work of the requests beside the grid."""
+        steady = () if self.steady is None else (self.steady,)
+        printed = PlanRow("printed values", len(self.checks), "points", "single points in plain Python")
+        rows = [one.work for one in (*self.peaks, *steady, *self.pictures)]
+        return [*rows, printed] if self.checks else rows
+
+    @property
+    def groups(self) -> list[str]:
+        """A name for each labelled result besides the values: of the peaks, and of the steady states."""
+        return [*group_names(self.peaks), *(["steady"] if self.steady is not None else [])]

@@ -4,18 +4,18 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-from ..evaluation.evaluate import evaluate
 from ..evaluation.in_units import in_units
 from ..mechanism.quantity_units import UnitSystem
 from ..support.progress import Progress, Steps
 from ..support.shown import printable
-from .content import Check, Content, Peak, PictureRequest
-from .parts.extremes import PeakResult, batches, groups_of, peaks_of
+from .content import Content
+from .parts.checks import CheckResult
+from .parts.extremes import Peak, PeakResult, batches, peaks_of
 from .parts.grid import blocks_of, values_of_grid
 from .parts.motor import steady_of
-from .parts.pictures import draw
+from .parts.pictures import PictureRequest, draw
 from .parts.stored import sweep_content
 from .parts.turning import FeasibilityResult, feasibility_of
 from .stores.files import store_group, write
@@ -23,14 +23,6 @@ from .stores.places import require_modules, require_places
 
 MOST_BATCHES = 1_000  # of peaks that a run shows beside a store
 FAILURES = (OSError, ValueError, RuntimeError, MemoryError)  # of a file that cannot be written
-
-
-class CheckResult(NamedTuple):
-    """A printed value and the computed one, in SI units."""
-
-    check: Check
-    computed: float
-    agrees: bool
 
 
 @dataclass(frozen=True)
@@ -65,7 +57,7 @@ def compute(content: Content, steps: Steps, overwrite: bool) -> Run:
     """Compute all that a scene asks for; nothing is written but its store."""
     require_modules(content)
     require_places(content, overwrite)
-    checks = tuple(_check(check, content) for check in content.checks)
+    checks = tuple(check.run(content) for check in content.checks)
     dataset: Any = None
     failures: tuple[str, ...] = ()
     if content.store is not None:
@@ -106,7 +98,7 @@ def _jobs(
     if content.data is not None:
         datasets = [one.dataset for one in found.peaks]
         datasets += [found.steady.dataset] if found.steady is not None else []
-        groups = dict(zip(groups_of(content), datasets, strict=True))
+        groups = dict(zip(content.groups, datasets, strict=True))
         job = partial(write, Path(content.data), found.dataset, groups, overwrite)
         jobs.append((content.data, f"writing {content.data}", job))
     if content.store is not None and found.steady is not None and not found.failures:
@@ -138,9 +130,3 @@ def _peaks(one: Peak, content: Content, steps: Steps) -> PeakResult:
 
 def _no_watch(done: int, total: int, what: str) -> None:
     """The steps of the run are shown, not the points of the sweep."""
-
-
-def _check(check: Check, content: Content) -> CheckResult:
-    design: dict[str, Any] = {**check.inputs, "branch": content.branch, "accuracy": content.accuracy}
-    computed = float(evaluate(check.quantity, **design))
-    return CheckResult(check, computed, check.printed.agrees(computed))

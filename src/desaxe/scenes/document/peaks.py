@@ -18,7 +18,7 @@ from ...sweeps.peak_step import WORDS
 from .. import schema
 from ..content import Content
 from ..parts.extremes import SIDEWAYS, ClaimResult, PeakResult, peaks_of
-from ..reading.requested import peak_of
+from ..reading.peaks import peak_of
 from ..schema import SceneError
 from .blocks import Block, Section, Text, TextTable, cell, thinned
 from .designs import axes_of, with_unit

@@ -12,10 +12,10 @@ from ...evaluation.in_units import in_units
 from ...mechanism.quantity_units import UnitSystem
 from ...support.shown import printed
 from ..content import Content
-from ..parts.extremes import groups_of
+from ..parts.checks import CheckResult
 from ..parts.motor import MotorResult
 from ..parts.turning import FeasibilityResult
-from ..run import CheckResult, Run
+from ..run import Run
 from ..stores.places import data_files
 from ..stores.tables import table_of
 from .blocks import Block, Section, Text, TextTable, cell, thinned
@@ -132,7 +132,7 @@ def files(content: Content, run: Run) -> Iterator[Section]:
     rows: list[tuple[str, str]] = []
     if content.data is not None:
         paths = [str(file) for file in data_files(content) if file in run.files]
-        parts = ["the values"] * bool(content.outputs) + [f"group {name}" for name in groups_of(content)]
+        parts = ["the values"] * bool(content.outputs) + [f"group {name}" for name in content.groups]
         rows += zip([*paths, *[""] * len(parts)], parts, strict=False) if paths else []
     rows += [
         (str(Path(picture.file)), f"{picture.quantity} over {picture.over}")

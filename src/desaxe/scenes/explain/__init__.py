@@ -5,5 +5,4 @@ steps     what was skipped and why, and what each pass saved
 loops     operations per loop of a kernel
 loads     how often a load is looked up, and where
 plan_text the plan as sections of texts and tables
-besides   peaks, pictures and checks
 """

@@ -3,7 +3,7 @@
 import json
 import shutil
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import prod
 from os import PathLike
 from pathlib import Path
@@ -36,7 +36,6 @@ from ..parts.stored import request_of
 from ..reading.values import Value
 from ..scene import Scene
 from ..scene import scene as scene_of
-from .besides import work_besides
 from .loads import load_costs, points_of
 from .loops import LoopCost, loops_of
 from .steps import skipped_of, steps_of
@@ -128,7 +127,9 @@ def _plan_of(content: Content) -> RunPlan:
         else _grid(content, plan)
     )
     results = content.data if content.store is None else content.store
-    return RunPlan(data | {"also": work_besides(content), "results": results, "sweep": _sweep(content)})
+    return RunPlan(
+        data | {"also": [asdict(work) for work in content.work], "results": results, "sweep": _sweep(content)}
+    )
 
 
 def _sweep(content: Content) -> dict[str, Any] | None:

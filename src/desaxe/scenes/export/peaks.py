@@ -22,8 +22,8 @@ from ...mechanism.own_lines import has_kinks
 from ...peaks import special
 from ...peaks.designs import KINDS, PeakPlan, plan_of
 from ...sweeps.peak_step import WORDS
-from ..content import Content, Peak
-from ..parts.extremes import columns_of, group_names
+from ..content import Content
+from ..parts.extremes import Peak, columns_of, group_names
 from .axes import axis_rows
 from .portable import left_out
 

@@ -1,6 +1,7 @@
 """A scene as a `Module` that any language can write: numbers folded in, lists and ranges as arguments."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from textwrap import wrap
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -97,7 +98,7 @@ def module_of(scene: Scene, order: Order, more: Sequence[str] = (), opened: Sequ
     loads = split(content.inputs)[1]
     require_tables(scene.name or "scene", loads)
     results = tuple(dict.fromkeys((*content.outputs, *(["status"] if order.status else []))))
-    wider = content._replace(inputs={**content.inputs, **dict.fromkeys(opened, ANY)})
+    wider = replace(content, inputs={**content.inputs, **dict.fromkeys(opened, ANY)})
     asked = asked_of(wider, (*results, "status", *more))
     fixed, state = asked.fixed, asked.request.form.state
     arguments = [n for n in ORDER if isinstance(content.inputs.get(n), tuple)]

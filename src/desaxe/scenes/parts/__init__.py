@@ -1,7 +1,8 @@
-"""The parts of a run, each from Content to labelled results.
+"""The requests of a scene: read from its tables, what they take, and their results.
 
 grid      the plan of its grid, run block by block
 stored    a scene as a sweep into its store
+checks    printed values beside the computed ones
 extremes  peaks over designs, and the claims about them
 motor     [steady]: steady states on a motor
 turning   which designs turn fully

@@ -1,6 +1,7 @@
 """The peaks of a scene, labelled, and the claims about them."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from math import pi, prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -8,26 +9,60 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...evaluation.evaluate import evaluate
-from ...evaluation.labels import (
-    CONVENTIONS,
-    import_xarray,
-    input_attributes,
-    source,
-    tell_loads,
-)
+from ...evaluation.labels import import_xarray, input_attributes, tell_loads
+from ...loads.load import Load
 from ...mechanism.catalogue import quantity
 from ...peaks.peak import peak
 from ...support.forks import IMPORTS
 from ...support.progress import Steps
 from ...sweeps.peak_step import WORDS, attributes_beside, slope_attributes
-from ..content import Claim, Content, Peak
+from ..reading.printed import Printed
 from ..reading.values import Value
+from ..setting import PlanRow, Setting
 
 if TYPE_CHECKING:
     import xarray as xr
 
 DESIGNS = 1_000  # designs of a peak between two reports of progress
 SIDEWAYS = ("ec", "F_X", "g_X")  # change sign where the mechanism is mirrored at the Y axis
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A claim about the peak of one design: its increase over the baseline."""
+
+    source: str
+    at: dict[str, float]
+    design: dict[str, float]
+    increase: Printed
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A peak over the crank angle, for the outer product of `axes` with everything else fixed."""
+
+    title: str
+    quantity: str
+    kind: str
+    axes: dict[str, tuple[float, ...]]
+    fixed: dict[str, float]
+    theta: tuple[float, float]
+    at_baseline: dict[str, float]
+    baseline: dict[str, float]
+    claims: tuple[Claim, ...]
+    sensitivities: tuple[str, ...]
+    loads: Mapping[str, Load] = field(default_factory=dict)  # that vary with the motion
+
+    @property
+    def designs(self) -> int:
+        """The number of designs, without those of baseline and claims."""
+        return prod(len(values) for values in self.axes.values())
+
+    @property
+    def work(self) -> PlanRow:
+        """A search for each design."""
+        how = "refined over theta by its derivative"
+        return PlanRow(f"{self.kind} of {self.quantity}", self.designs, "designs", how)
 
 
 class ClaimResult(NamedTuple):
@@ -55,18 +90,17 @@ class PeakResult(NamedTuple):
 
 def batches(one: Peak) -> int:
     """The number of batches of a peak."""
-    designs = prod(len(values) for values in one.axes.values()) + len(one.claims) + bool(one.baseline)
-    return -(-designs // DESIGNS)
+    return -(-(one.designs + len(one.claims) + bool(one.baseline)) // DESIGNS)
 
 
-def peaks_of(one: Peak, content: Content, steps: Steps) -> PeakResult:
+def peaks_of(one: Peak, setting: Setting, steps: Steps) -> PeakResult:
     """The peaks of designs, baseline and claims, found together."""
     others = [*([one.baseline] if one.baseline else []), *(claim.design for claim in one.claims)]
     columns = {
         name: np.append(column, [design[name] for design in others])
         for name, column in columns_of({**one.axes, **one.fixed}).items()
     }
-    found = _found(one, content, columns, steps)
+    found = _found(one, setting, columns, steps)
     shape = [len(values) for values in one.axes.values()]
     count = prod(shape)
     arrays = {name: values[:count].reshape(shape) for name, values in found.items()}
@@ -77,16 +111,16 @@ def peaks_of(one: Peak, content: Content, steps: Steps) -> PeakResult:
         computed = [float(_increase(value, base)) for value in claimed]
         pairs = zip(one.claims, computed, strict=True)
         claims = tuple(ClaimResult(claim, value, claim.increase.agrees(value)) for claim, value in pairs)
-    mirrored = _mirrored(one, content, columns, found)[:count].reshape(shape)
-    return PeakResult(one, _labelled(one, content, arrays), claims, mirrored)
+    mirrored = _mirrored(one, setting, columns, found)[:count].reshape(shape)
+    return PeakResult(one, _labelled(one, setting, arrays), claims, mirrored)
 
 
 def _found(
-    one: Peak, content: Content, columns: Mapping[str, NDArray[np.float64]], steps: Steps
+    one: Peak, setting: Setting, columns: Mapping[str, NDArray[np.float64]], steps: Steps
 ) -> dict[str, NDArray[Any]]:
     """Value, angle, status and gradient of flat designs, batch by batch."""
     size = next(iter(columns.values())).size
-    options: dict[str, Any] = {"branch": content.branch, "accuracy": content.accuracy}
+    options: dict[str, Any] = {"branch": setting.branch, "accuracy": setting.accuracy}
     parts = []
     for start in range(0, size, DESIGNS):
         steps.next(f"peaks of {one.quantity}")
@@ -101,7 +135,7 @@ def _found(
 
 
 def _mirrored(
-    one: Peak, content: Content, columns: Mapping[str, NDArray[np.float64]], found: Mapping[str, NDArray[Any]]
+    one: Peak, setting: Setting, columns: Mapping[str, NDArray[np.float64]], found: Mapping[str, NDArray[Any]]
 ) -> NDArray[np.bool_]:
     """Designs with ec = 0 whose peak is shared by theta and -theta: a kink in its course over ec."""
     theta = found["theta"]
@@ -110,7 +144,7 @@ def _mirrored(
         return np.zeros(theta.shape, np.bool_)
     steady = columns["alpha"] == 0.0 if "alpha" in columns else True
     usable = (columns["ec"] == 0.0) & (found["status"] == 0) & (np.abs(np.sin(theta)) > 1e-6) & steady
-    design: dict[str, Any] = {**columns, **one.loads, "branch": content.branch, "accuracy": content.accuracy}
+    design: dict[str, Any] = {**columns, **one.loads, "branch": setting.branch, "accuracy": setting.accuracy}
     there: Any = evaluate(one.quantity, theta=-theta, **design)
     there = np.abs(there) if one.kind == "absmax" else there
     shared: NDArray[np.bool_] = usable & (np.abs(there - found["value"]) <= 1e-9 * np.abs(found["value"]))
@@ -123,7 +157,7 @@ def _increase(value: Any, base: float) -> Any:
         return 100.0 * (np.asarray(value) - base) / np.abs(np.float64(base))
 
 
-def _labelled(one: Peak, content: Content, arrays: Mapping[str, NDArray[Any]]) -> "xr.Dataset":
+def _labelled(one: Peak, setting: Setting, arrays: Mapping[str, NDArray[Any]]) -> "xr.Dataset":
     import_xarray()
     with IMPORTS:
         import xarray
@@ -139,8 +173,8 @@ def _labelled(one: Peak, content: Content, arrays: Mapping[str, NDArray[Any]]) -
     data = {name: (tuple(one.axes), array, attributes[name]) for name, array in arrays.items()}
     axes = {name: (name, list(values), input_attributes(name)) for name, values in one.axes.items()}
     scalars = {name: ((), value, input_attributes(name)) for name, value in one.fixed.items()}
-    kind = {"quantity": one.quantity, "kind": one.kind, "branch": content.branch}
-    dataset = xarray.Dataset(data, {**axes, **scalars}, {**provenance(content), **kind})
+    kind = {"quantity": one.quantity, "kind": one.kind, "branch": setting.branch}
+    dataset = xarray.Dataset(data, {**axes, **scalars}, {**setting.provenance, **kind})
     return tell_loads(dataset, one.loads)
 
 
@@ -157,17 +191,6 @@ def columns_of(inputs: Mapping[str, Value]) -> dict[str, NDArray[np.float64]]:
     """The outer product of the inputs, flat, in the order given."""
     arrays = np.meshgrid(*(np.asarray(value) for value in inputs.values()), indexing="ij")
     return {name: array.reshape(-1) for name, array in zip(inputs, arrays, strict=True)}
-
-
-def provenance(content: Content) -> dict[str, str]:
-    """Attributes of provenance: title, source, conventions."""
-    title = {"title": content.title} if content.title else {}
-    return {**title, "source": source(), "Conventions": CONVENTIONS}
-
-
-def groups_of(content: Content) -> list[str]:
-    """A name for each labelled result besides the values: of the peaks, and of the steady states."""
-    return [*group_names(content.peaks), *(["steady"] if content.steady is not None else [])]
 
 
 def group_names(peaks: Sequence[Peak]) -> list[str]:

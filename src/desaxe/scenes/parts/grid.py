@@ -9,9 +9,8 @@ import numpy as np
 from ...evaluation.axes import outer_of
 from ...evaluation.plan import Plan, plan_of
 from ...support.progress import Steps
-from ..content import Content
 from ..reading.values import Value
-from .extremes import provenance
+from ..setting import Setting
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,30 +18,30 @@ if TYPE_CHECKING:
 BLOCK = 5_000_000  # points of the grid between two reports of progress
 
 
-def plan_of_grid(content: Content) -> Plan:
+def plan_of_grid(setting: Setting) -> Plan:
     """The plan of the outputs over the outer product of all inputs."""
-    outer = outer_of(content.outputs, arrays_of(content.inputs), content.branch, content.threads, always=True)
-    return plan_of(outer, content.branch, content.accuracy, content.reduction)
+    outer = outer_of(setting.outputs, arrays_of(setting.inputs), setting.branch, setting.threads, always=True)
+    return plan_of(outer, setting.branch, setting.accuracy, setting.reduction)
 
 
-def blocks_of(content: Content) -> tuple[int, int]:
+def blocks_of(setting: Setting) -> tuple[int, int]:
     """The number of blocks along the first axis, and their length: a large grid reports its progress."""
-    sizes = [len(value) for value in content.inputs.values() if isinstance(value, tuple)]
-    first = sizes[0] if sizes and content.reduction is None else 1
+    sizes = [len(value) for value in setting.inputs.values() if isinstance(value, tuple)]
+    first = sizes[0] if sizes and setting.reduction is None else 1
     length = -(-first // max(1, min(first, prod(sizes) // BLOCK)))
     return -(-first // length), length
 
 
-def values_of_grid(content: Content, steps: Steps) -> "xr.Dataset":
+def values_of_grid(setting: Setting, steps: Steps) -> "xr.Dataset":
     """The requested outputs over the outer product of all inputs, labelled."""
-    plan = plan_of_grid(content)
-    if content.reduction is not None:
+    plan = plan_of_grid(setting)
+    if setting.reduction is not None:
         steps.next("values")
-        arrays = plan.values(content.threads)
+        arrays = plan.values(setting.threads)
     else:
-        first = dict.fromkeys(list(plan.sizes)[:1], blocks_of(content)[1])
-        arrays = plan.values(content.threads, {**plan.sizes, **first}, lambda: steps.next("values"))
-    return plan.dataset(arrays).assign_attrs(provenance(content))
+        first = dict.fromkeys(list(plan.sizes)[:1], blocks_of(setting)[1])
+        arrays = plan.values(setting.threads, {**plan.sizes, **first}, lambda: steps.next("values"))
+    return plan.dataset(arrays).assign_attrs(setting.provenance)
 
 
 def arrays_of(inputs: Mapping[str, Value]) -> dict[str, Any]:

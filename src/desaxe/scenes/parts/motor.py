@@ -1,6 +1,8 @@
 """[steady] of a scene: the machine on its motor, and its steady states, labelled."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -19,11 +21,10 @@ from ...mechanism.status import SteadyStatus
 from ...scenes import schema
 from ...support.extras import MissingExtraError
 from ...support.forks import IMPORTS
-from ..content import Content, OnMotor
 from ..reading.loads import file_of
 from ..reading.values import Value, read_number
 from ..schema import SceneError, shown
-from .extremes import provenance
+from ..setting import PlanRow, Setting
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -38,6 +39,23 @@ MEANINGS = {
     "flywheel_inertia": "flywheel, added at the crank",
     "status": "; ".join(f"{status:d} {status.words}" for status in SteadyStatus),
 }  # fmt: skip
+
+
+@dataclass(frozen=True)
+class OnMotor:
+    """The steady states on a motor, for the outer product of `axes` with everything else fixed."""
+
+    torque: Any
+    axes: dict[str, tuple[float, ...]]
+    fixed: dict[str, Value]
+    seeks: bool  # the flywheel for a fluctuation
+
+    @property
+    def work(self) -> PlanRow:
+        """A periodic motion for each design."""
+        designs = prod(len(values) for values in self.axes.values())
+        how = "periodic motions by Newton's method, in NumPy"
+        return PlanRow("steady state on a motor", designs, "designs", how)
 
 
 class MotorResult(NamedTuple):
@@ -136,15 +154,15 @@ def _motor(written: Any, units: UnitSystem, folder: Path | None) -> Any:
         ) from None
 
 
-def steady_of(asked: OnMotor, content: Content) -> MotorResult:
+def steady_of(asked: OnMotor, setting: Setting) -> MotorResult:
     """The steady states of all designs, together."""
     arrays = np.meshgrid(*(np.asarray(v) for v in asked.axes.values()), indexing="ij") if asked.axes else []
     given: dict[str, Any] = {**asked.fixed, **dict(zip(asked.axes, arrays, strict=True))}
-    found = steady(torque=asked.torque, branch=content.branch, **given)
-    return MotorResult(asked, _labelled(asked, content, found), found)
+    found = steady(torque=asked.torque, branch=setting.branch, **given)
+    return MotorResult(asked, _labelled(asked, setting, found), found)
 
 
-def _labelled(asked: OnMotor, content: Content, found: Steady) -> "xr.Dataset":
+def _labelled(asked: OnMotor, setting: Setting, found: Steady) -> "xr.Dataset":
     import_xarray()
     with IMPORTS:
         import xarray
@@ -159,7 +177,7 @@ def _labelled(asked: OnMotor, content: Content, found: Steady) -> "xr.Dataset":
     axes = {name: (name, list(values), _attributes(name)) for name, values in asked.axes.items()}
     loads = {n: v for n, v in asked.fixed.items() if isinstance(v, Load)}
     scalars = {n: ((), v, _attributes(n)) for n, v in asked.fixed.items() if n not in loads and n not in data}
-    about = {**provenance(content), "branch": content.branch, "torque": repr(asked.torque)}
+    about = {**setting.provenance, "branch": setting.branch, "torque": repr(asked.torque)}
     return tell_loads(xarray.Dataset(data, {**axes, **scalars}, about), loads)
 
 

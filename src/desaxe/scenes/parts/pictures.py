@@ -1,37 +1,91 @@
-"""The pictures of a scene."""
+"""[[picture]]: families of curves as files."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import prod
 from pathlib import Path
 from typing import Any
 
 from ...evaluation.grid import grid
 from ...evaluation.in_units import in_units
+from ...mechanism.inputs import INPUTS
 from ...mechanism.quantity_units import UnitSystem
+from ...scenes import schema
 from ...support.forks import IMPORTS
-from ..content import Content, PictureRequest
+from ..reading.needs import require_for_grid, require_known, single, with_others
+from ..reading.values import Value, design_of, only_inputs, values_of
+from ..schema import SceneError, shown
+from ..setting import PlanRow, Setting
 from .grid import arrays_of
 
 
-def draw(picture: PictureRequest, content: Content, shown_in: UnitSystem, overwrite: bool) -> Path:
+@dataclass(frozen=True)
+class PictureRequest:
+    """A family of curves and the file it goes to."""
+
+    title: str
+    file: str
+    quantity: str
+    over: str
+    family: str | None
+    inputs: dict[str, Value]
+
+    @property
+    def work(self) -> PlanRow:
+        """The points of its curves."""
+        points = prod(len(value) for value in self.inputs.values() if isinstance(value, tuple))
+        return PlanRow(f"picture of {self.quantity}", points, "points", f"drawn to {self.file}")
+
+
+def picture_of(
+    key: str, table: schema.PictureTable, inputs: Mapping[str, Value], units: UnitSystem
+) -> PictureRequest:
+    """The curves of a [[picture]]."""
+    name = table.quantity
+    only_inputs(f"{key}.family", table.family)
+    if len(table.family) > 1:
+        raise SceneError(f"{key}.family: one input makes a family, got {', '.join(table.family)}")
+    family = {n: values_of(f"{key}.family.{n}", n, written, units) for n, written in table.family.items()}
+    there = with_others(with_others(inputs, design_of(f"{key}.at", table.at, units)), family)
+    require_known(f"{key}.quantity", name, "omega" in there)
+    needed = require_for_grid(f"{key}.quantity", (name,), there)
+    if table.over not in INPUTS:
+        raise SceneError(
+            f"{key}.over = {shown(table.over)}: unknown input; {schema.hint(table.over, tuple(INPUTS))}"
+        )
+    if not isinstance(there.get(table.over), tuple) or table.over in family:
+        raise SceneError(
+            f"{key}.over = {shown(table.over)}: it must be an input that has a list or range of values"
+        )
+    member = next(iter(family), None)
+    curves = [n for n in (member, table.over) if n is not None]
+    fixed = single(key, [n for n in needed if n not in curves], there)
+    return PictureRequest(
+        table.title, table.file, name, table.over, member, {**{n: there[n] for n in curves}, **fixed}
+    )
+
+
+def draw(picture: PictureRequest, setting: Setting, shown_in: UnitSystem, overwrite: bool) -> Path:
     """Draw the curves of a picture, in the units shown, into its file; return its path."""
-    axes = drawn(picture, content, shown_in)
+    axes = drawn(picture, setting, shown_in)
     with IMPORTS:
         from ...plot import save
     return save(axes.figure, picture.file, overwrite=overwrite)
 
 
-def drawn(picture: PictureRequest, content: Content, shown_in: UnitSystem) -> Any:
+def drawn(picture: PictureRequest, setting: Setting, shown_in: UnitSystem) -> Any:
     """The curves of a picture, in the units shown; returns the Axes."""
     with IMPORTS:
         from ...plot import curves
 
     # With the names of the outputs the kernel of the grid serves here too, where all inputs are the same.
-    shared = picture.quantity in content.outputs and set(picture.inputs) == set(content.inputs)
-    names = content.outputs if shared else (picture.quantity,)
-    options: dict[str, Any] = {"accuracy": content.accuracy, "threads": content.threads}
-    values: Any = grid(names, branch=content.branch, **options, **arrays_of(picture.inputs))
+    shared = picture.quantity in setting.outputs and set(picture.inputs) == set(setting.inputs)
+    names = setting.outputs if shared else (picture.quantity,)
+    options: dict[str, Any] = {"accuracy": setting.accuracy, "threads": setting.threads}
+    values: Any = grid(names, branch=setting.branch, **options, **arrays_of(picture.inputs))
     dataset = in_units(values, shown_in)
     axes: Any = curves(dataset, picture.quantity, over=picture.over, family=picture.family).axes
-    title = picture.title or content.title
+    title = picture.title or setting.title
     if title:
         axes.set_title(" ".join(title.split()), loc="left", parse_math=False)  # text, no TeX
     return axes

@@ -1,7 +1,7 @@
 """Reading of scenes: a file or mapping as `Content`, numbers with their units.
 
 read       a file or mapping as Content
-requested  [[check]], [[peak]] and [[picture]] as what they ask for
+peaks      [[peak]] as a request
 values     numbers with units, lists and ranges as SI numbers
 spread     evenly spaced values of a range, each rounded once
 printed    values as a paper prints them, compared digit by digit

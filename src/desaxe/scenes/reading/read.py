@@ -25,11 +25,13 @@ from ...scenes import schema
 from ...support.memory import bytes_of
 from ...support.toml import read_toml
 from ..content import Content
+from ..parts.checks import checks_of
 from ..parts.motor import on_motor
+from ..parts.pictures import picture_of
 from ..schema import SECTIONS, SceneError, shown
 from .loads import require_units_of_file, varying, without_objects
 from .needs import require_for_grid, require_known
-from .requested import checks_of, peak_of, picture_of
+from .peaks import peak_of
 from .values import Value, values_of
 from .written import written_inputs
 
@@ -109,11 +111,12 @@ def _content(
         if file.steady is None
         else on_motor(file.steady, data["steady"]["torque"], inputs, units, folder)
     )
+    store, chunks, memory = _storage(file, outputs, inputs)
     return Content(
-        file.title, outputs, _accuracy(file.accuracy), branch, inputs,
-        tuple(checks), tuple(peaks), tuple(pictures), file.results.data,
-        _reduction(file, outputs, inputs, units), file.threads, units, *_storage(file, outputs, inputs), own,
-        motor,
+        title=file.title, outputs=outputs, accuracy=_accuracy(file.accuracy), branch=branch, inputs=inputs,
+        reduction=_reduction(file, outputs, inputs, units), threads=file.threads, units=units,
+        checks=tuple(checks), peaks=tuple(peaks), pictures=tuple(pictures), steady=motor,
+        data=file.results.data, store=store, chunks=chunks, memory=memory, definitions=own,
     )  # fmt: skip
 
 

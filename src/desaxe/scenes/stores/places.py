@@ -12,7 +12,6 @@ from ...support.files import require_writable
 from ...support.memory import size_text
 from ...support.written import require_path
 from ..content import Content
-from ..parts.extremes import groups_of
 from ..parts.stored import require_store
 from ..schema import SceneError
 from .files import check_place, files_of, requirements_of
@@ -56,7 +55,7 @@ def require_places(content: Content, overwrite: bool) -> None:
 def data_files(content: Content) -> list[Path]:
     """The files of results.data."""
     assert content.data is not None
-    return files_of(Path(content.data), bool(content.outputs), groups_of(content))
+    return files_of(Path(content.data), bool(content.outputs), content.groups)
 
 
 def _claim(places: dict[str, str], key: str, path: str | PathLike[str]) -> None:

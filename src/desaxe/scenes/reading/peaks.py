@@ -1,4 +1,4 @@
-"""[[check]], [[peak]] and [[picture]] of a scene as what they ask for."""
+"""[[peak]] of a scene as a request."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -6,36 +6,16 @@ from typing import Any
 from ...loads.angles import cycle
 from ...loads.load import Load
 from ...mechanism.catalogue import of_design, quantity
-from ...mechanism.inputs import INPUTS
 from ...mechanism.names import CENTRES, LENGTHS, STATUS, parts, sensitivity
 from ...mechanism.quantity_units import UnitSystem
 from ...scenes import schema
-from ..content import Check, Claim, Peak, PictureRequest
+from ..parts.extremes import Claim, Peak
 from ..schema import SceneError, shown
-from .needs import OPTIONAL, needs_of, require, require_for_grid, require_known, single, with_others
-from .printed import read_percentage, read_printed
-from .values import Value, design_of, number_of, only_inputs, values_of, with_unit_in
+from .needs import OPTIONAL, needs_of, require, require_known, with_others
+from .printed import read_percentage
+from .values import Value, design_of, number_of, only_inputs, values_of
 
 SENSITIVITIES = LENGTHS  # of a peak, those on which it depends, unless others are requested
-
-
-def checks_of(
-    key: str, table: schema.CheckTable, inputs: Mapping[str, Value], units: UnitSystem
-) -> list[Check]:
-    """The printed values of a [[check]], each with the inputs that it needs."""
-    there = with_others(inputs, design_of(f"{key}.at", table.at, units))
-    checks = []
-    for name, written in table.printed.items():
-        place = f"{key}.printed.{name}"
-        require_known(place, name, "omega" in there)
-        needed = require(place, needs_of((name,), there), name, there)
-        printed = read_printed(
-            place, with_unit_in(units, name, written), table.digits, quantity(name, "omega" in there).unit
-        )
-        checks.append(Check(table.title, table.source, name, printed, single(place, needed, there)))
-    if not checks:
-        raise SceneError(f"{key}.printed = {{}}: expected at least one printed value")
-    return checks
 
 
 def peak_of(key: str, table: schema.PeakTable, inputs: Mapping[str, Value], units: UnitSystem) -> Peak:
@@ -166,31 +146,3 @@ def _claim(
     design = _other_design(f"{key}.at", claim.at, axes, fixed, units)
     at = design_of(f"{key}.at", claim.at, units)
     return Claim(claim.source, at, design, read_percentage(f"{key}.increase", claim.increase))
-
-
-def picture_of(
-    key: str, table: schema.PictureTable, inputs: Mapping[str, Value], units: UnitSystem
-) -> PictureRequest:
-    """The curves of a [[picture]]."""
-    name = table.quantity
-    only_inputs(f"{key}.family", table.family)
-    if len(table.family) > 1:
-        raise SceneError(f"{key}.family: one input makes a family, got {', '.join(table.family)}")
-    family = {n: values_of(f"{key}.family.{n}", n, written, units) for n, written in table.family.items()}
-    there = with_others(with_others(inputs, design_of(f"{key}.at", table.at, units)), family)
-    require_known(f"{key}.quantity", name, "omega" in there)
-    needed = require_for_grid(f"{key}.quantity", (name,), there)
-    if table.over not in INPUTS:
-        raise SceneError(
-            f"{key}.over = {shown(table.over)}: unknown input; {schema.hint(table.over, tuple(INPUTS))}"
-        )
-    if not isinstance(there.get(table.over), tuple) or table.over in family:
-        raise SceneError(
-            f"{key}.over = {shown(table.over)}: it must be an input that has a list or range of values"
-        )
-    member = next(iter(family), None)
-    curves = [n for n in (member, table.over) if n is not None]
-    fixed = single(key, [n for n in needed if n not in curves], there)
-    return PictureRequest(
-        table.title, table.file, name, table.over, member, {**{n: there[n] for n in curves}, **fixed}
-    )
