@@ -12,10 +12,20 @@ from typing import Any
 import mpmath
 from hypothesis import strategies as st
 
-from desaxe.compiler.interpret import run_exactly, run_in_doubles
+from desaxe.compiler.interpret import run_in_doubles
 from desaxe.compiler.operations import OPERATIONS, result_type
 from desaxe.compiler.passes.slicing import drop_unused
-from desaxe.compiler.program import Argument, Line, Note, Program, names_in, type_of, validate
+from desaxe.compiler.program import (
+    Argument,
+    Line,
+    Note,
+    Program,
+    TableName,
+    names_in,
+    tables_in,
+    type_of,
+    validate,
+)
 from desaxe.mechanism.program import program_of
 
 INPUTS = ("x", "y", "z")
@@ -89,6 +99,21 @@ def points() -> st.SearchStrategy[dict[str, float]]:
 def committed(*names: str) -> Program:
     """The committed program of these names."""
     return program_of(names)
+
+
+def run_exactly(program: Program, mp: Any, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Every name of the program by the `exact` column, over the functions of `mp`."""
+    scope: dict[str, Any] = {name: mp.mpf(values[name]) for name in program.inputs}
+    scope |= {name: values[name] for name in tables_in(program)}
+
+    def argument(value: Argument) -> Any:
+        if isinstance(value, (str, TableName)):
+            return scope[value if isinstance(value, str) else value.name]
+        return mp.mpf(value) if isinstance(value, float) else value
+
+    for line in program.lines:
+        scope[line.name] = OPERATIONS[line.op].exact(mp, *map(argument, line.args))
+    return scope
 
 
 def exactly(program: Program, values: Mapping[str, Any]) -> dict[str, Any]:

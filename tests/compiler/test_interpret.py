@@ -5,10 +5,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from desaxe.compiler.interpret import run_exactly, run_in_doubles
+from desaxe.compiler.interpret import run_in_doubles
 from desaxe.compiler.program import Line, Program
 from desaxe.oracle.truth import relative_error, truth
-from tests.compiler.programs import INPUTS, POINT, committed, exactly, in_doubles, program_of_nested, programs
+from tests.compiler.programs import (
+    INPUTS,
+    POINT,
+    committed,
+    exactly,
+    in_doubles,
+    program_of_nested,
+    programs,
+    run_exactly,
+)
 from tests.effort import cases
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from desaxe.compiler.kernel import hoist, level_program, tabulate
+from desaxe.compiler.kernel import hoist, tabulate
 from desaxe.compiler.passes.pipeline import optimise
-from desaxe.compiler.program import Line, Note, Program, names_in
+from desaxe.compiler.program import Line, Program, names_in
 from desaxe.runtime.executor import CompiledKernel
 from tests.compiler.programs import INPUTS, committed, depends_on, programs
 from tests.effort import cases
@@ -47,21 +47,6 @@ def test_types_and_notes_come_along():
     kernel = hoist(program, {name: GRID[name] for name in program.inputs}, AXES)
     assert kernel.types["status"] == "i64"
     assert kernel.notes == program.notes
-
-
-LINES = (
-    Line("u", "neg", ("x",)),
-    Line("v", "mul", ("u", "y")),
-    Line("w", "mul", ("v", "z")),
-    Line("only_x", "sin", ("u",)),
-)
-SMALL = Program(INPUTS, LINES, ("w", "only_x", "v"), {"u": Note("1", "a step")})
-
-
-@pytest.mark.parametrize(("level", "outputs"), [(0, ()), (1, ("u", "only_x")), (2, ("v",)), (3, ("w",))])
-def test_a_level_gives_what_the_others_need(level, outputs):
-    """`u` and `v` go deeper; `only_x` and `w` go to the outputs."""
-    assert level_program(hoist(SMALL, {"x": 0, "y": 1, "z": 2}, AXES), level).outputs == outputs
 
 
 def test_a_constant_runs_once():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from desaxe.compiler.builder import module_text, with_sources
-from desaxe.compiler.interpret import run_exactly, run_in_doubles
+from desaxe.compiler.interpret import run_in_doubles
 from desaxe.compiler.kernel import hoist
 from desaxe.compiler.languages import language_of
 from desaxe.compiler.languages.arrays import compile_arrays
@@ -22,6 +22,7 @@ from desaxe.mechanism.constants import double_constants
 from desaxe.runtime.executor import CompiledKernel
 from tests.compiler.languages.modules import module, written
 from tests.compiler.languages.runners import RUNNERS, caller
+from tests.compiler.programs import run_exactly
 
 KNOTS = (0.25, 0.5, 1.75, 1.75, 3.0)  # a place given twice is a jump
 ROWS = tuple(np.random.default_rng(3).integers(-8, 9, 4 * 2 * (len(KNOTS) + 1)).astype(float).tolist())

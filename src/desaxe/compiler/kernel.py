@@ -75,35 +75,6 @@ def _placed(program: Program, axis_of: Mapping[str, int | None], axes: int) -> K
     return Kernel(axes, inputs, tuple(map(tuple, levels)), program.outputs, types, program.notes)
 
 
-def level_program(kernel: Kernel, level: int) -> Program:
-    """One level as a Program; its outputs are the values needed by deeper levels and by the result."""
-    own = {line.name for line in kernel.levels[level]}
-    results: tuple[str, ...] = kernel.outputs
-    lines = [line for lines in kernel.levels[level + 1 :] for line in lines]
-    if kernel.close is not None:
-        results += kernel.close.test, *_results(kernel.close)
-        lines += kernel.close.lines if level < kernel.axes else ()
-    deeper = {name for line in lines for name in names_in(line.args)}
-    needed = [line.name for line in kernel.levels[level] if line.name in deeper]
-    outputs = tuple(needed + [name for name in dict.fromkeys(results) if name in own and name not in deeper])
-    return Program((), kernel.levels[level], outputs, kernel.notes)
-
-
-def stable_branch_programs(kernel: Kernel) -> tuple[Program, Program]:
-    """The test and the lines of `close` as programs of their own."""
-    close = kernel.close
-    if close is None:
-        raise ValueError("this kernel has one form")
-    own = {line.name for line in close.lines}
-    outputs = tuple(name for name in dict.fromkeys(_results(close)) if name in own)
-    test = Program((), close.test_lines, (close.test,), kernel.notes)
-    return test, Program((), close.lines, outputs, kernel.notes)
-
-
-def _results(close: StableBranch) -> tuple[str, ...]:
-    return close.outputs if close.undecided is None else (*close.outputs, close.undecided)
-
-
 READ = 2.0  # what reading a value from a table costs, in additions
 
 

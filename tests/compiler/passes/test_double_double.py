@@ -35,7 +35,7 @@ def in_pairs(lines, point):
 
 
 def exactly(lines, point):
-    from desaxe.compiler.interpret import run_exactly
+    from tests.compiler.programs import run_exactly
 
     program = Program(tuple(point), tuple(lines), (lines[-1].name,), {})
     return run_exactly(program, mpmath.mp, point)[lines[-1].name]
@@ -123,7 +123,7 @@ def test_the_coverage_set_is_rounded_once():
     wide = validate(double_double(program, double_constants()))
     for point in POINTS:
         found = in_doubles(wide, point)
-        from desaxe.compiler.interpret import run_exactly
+        from tests.compiler.programs import run_exactly
 
         with mpmath.workdps(60):
             exact = run_exactly(program, mpmath.mp, point)

@@ -5,17 +5,12 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from .. import helpers
-from ..builder import function_text, module_text, with_sources
+from ..builder import function_text
 from ..operations import MATH_NAMES
 from ..program import Program, tables_in
 from ..text import with_short_temporaries, write_lines
 
 SCOPE = {name: getattr(math, name) for name in MATH_NAMES} | vars(helpers)  # what spellings call
-
-
-def emit_python(program: Program, docstring: str) -> str:
-    """The source of a module with `point(*inputs)`, which returns a tuple of the outputs and never raises."""
-    return module_text(docstring, with_sources([point_text(program)]))
 
 
 def point_text(program: Program, name: str = "point", arguments: Sequence[str] | None = None) -> str:
