@@ -49,7 +49,7 @@ WHOLE = ("rotated_sin", "rotated_cos")  # their last argument is a whole number
 
 
 def lost(function, a, b):
-    """What rounding takes from a sum or product of doubles: by fractions."""
+    """The error of a rounded sum or product of doubles, by fractions."""
     if not all(map(math.isfinite, (a, b, function(a, b)))):
         return math.nan
     return float(function(Fraction(a), Fraction(b)) - Fraction(function(a, b)))

@@ -7,6 +7,7 @@ theirs: `grad`, `jacfwd`, `hessian`, `vmap` and `jit` see exact derivatives in t
 
 import re
 
+from ...support.template import file_text
 from ..builder import HELPERS as SHARED
 from ..builder import functions_of
 from ..program import Program
@@ -16,6 +17,7 @@ from .shared import (
     arrays_of,
     called,
     documented,
+    functions_in,
     numbers,
     one_line,
     statements,
@@ -26,126 +28,21 @@ from .shared import (
 from .words import words_of
 
 NUMPY = (
-    "copysign",
-    "cos",
-    "exp",
-    "floor",
-    "hypot",
-    "inf",
-    "log",
-    "logical_and",
-    "logical_not",
-    "logical_or",
-    "nan",
-    "searchsorted",
-    "sin",
-    "sqrt",
-    "where",
-)
+    "copysign", "cos", "exp", "floor", "hypot", "inf", "log", "logical_and", "logical_not", "logical_or",
+    "nan", "searchsorted", "sin", "sqrt", "where",
+)  # fmt: skip
 RENAMED = {"atan2": "arctan2", "fabs": "abs", "pow": "power"}  # readable text -> jax.numpy
 OWN = ("asarray", "custom_jvp", "finfo", "float32", "result_type", "stop_gradient", "zeros_like", "int8")
 WORDS = {"nan": "nan", "inf": "inf", "True": "True", "False": "False"}
 HELPERS = {
     "two_sum_error": functions_of(SHARED)["two_sum_error"] + "\n",
-    "two_product_error": '''def two_product_error(a, b):
-    """What rounding took from a * b, exactly (Dekker)."""
-    product = a * b
-    splitter = 2.0 ** ((finfo(result_type(product)).nmant + 2) // 2) + 1.0
-    wide = splitter * a
-    a_high = wide - (wide - a)
-    a_low = a - a_high
-    wide = splitter * b
-    b_high = wide - (wide - b)
-    b_low = b - b_high
-    return a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low) + 0.0
-''',
-    "mul_add": '''def mul_add(a, b, c):
-    """a * b + c, rounded as often as the machine likes."""
-    return a * b + c
-''',
-    "extended_only": '''def extended_only(a):
-    """Whether to take a form that only twice the digits tell from the other: not here."""
-    return logical_and(a, False)
-''',
-    "rounding": '''def rounding(a):
-    """What rounding may take from a number of this size in four operations."""
-    return 2.0 * finfo(result_type(a)).eps * fabs(a)
-''',
-    "power_of_two": '''def power_of_two(a):
-    """The power of two that is not below a size (Rump), within what the floating type holds."""
-    kind = finfo(result_type(a))
-    most = 2.0 ** (kind.maxexp - 64)
-    size = where(a < most, a, most)
-    size = where(1.0 / most < size, size, 1.0 / most)
-    wide = 2.0 ** (kind.nmant + 1) * size
-    step = (wide + size) - wide
-    return where(0.0 < step, step, size)
-''',
-    "lookup_piece": '''def lookup_piece(x, knots, way):
-    """The number of the piece of a table at x; those of the way back follow."""
-    knots = asarray(knots)
-    back = where(way < 0.0, knots.size + 1, 0)
-    return searchsorted(knots, x, side="right") + back
-''',
-    "lookup": '''def lookup(x, knots, rows, piece):
-    """The value of a piece of a table at x, beyond its ends too."""
-    s, a, b, c, d = row_of(x, knots, rows, piece)
-    return a + s * (b + s * (c + s * d))
-''',
-    "lookup_slope": '''def lookup_slope(x, knots, rows, piece):
-    """The slope of a piece of a table at x, beyond its ends too."""
-    s, _, b, c, d = row_of(x, knots, rows, piece)
-    return b + s * (2.0 * c + s * (3.0 * d))
-''',
-    "row_of": '''def row_of(x, knots, rows, piece):
-    """The distance from the left knot of a piece, and its coefficients."""
-    knots, rows = asarray(knots), asarray(rows)
-    at = piece % (knots.size + 1)
-    distance = x - knots[where(at > 0, at - 1, 0)]
-    return (distance, *(rows[4 * piece + k] for k in range(4)))
-''',
-    "rotated_sin": '''def rotated_sin(sine, cosine, quarters):
-    """The sine of an angle and whole quarter turns, from the angle's own."""
-    value = where(quarters % 2.0 == 1.0, cosine, sine)
-    return where(quarters % 4.0 >= 2.0, -value, value)
-''',
-    "rotated_cos": '''def rotated_cos(sine, cosine, quarters):
-    """The cosine of an angle and whole quarter turns, from the angle's own."""
-    value = where(quarters % 2.0 == 1.0, sine, cosine)
-    return where((quarters + 1.0) % 4.0 >= 2.0, -value, value)
-''',
+    **functions_in(file_text(__package__, "jax_helpers.txt")),
 }
 USE = (
     'It needs jax, and nothing of desaxe. Float64 wants jax.config.update("jax_enable_x64", True);',
     "float32 arrays are computed in float32.",
 )
-RULES = '''def with_derivatives(name, function):
-    """A function of all INPUTS whose derivatives are the functions in DERIVATIVES."""
-    known = custom_jvp(function)
-
-    def rule(inputs, tangents):
-        value = known(*inputs)
-        total = zeros_like(value)
-        for place, tangent in enumerate(tangents):
-            if isinstance(tangent, SymbolicZero) or INPUTS[place] not in NEEDS[name]:
-                continue
-            derivative = DERIVATIVES[name].get(INPUTS[place])
-            if derivative is None:
-                raise NotImplementedError(f"{name} has no derived derivative by {INPUTS[place]}")
-            total = total + FUNCTIONS[derivative](*inputs) * tangent
-        return value, total
-
-    known.defjvp(rule, symbolic_zeros=True)
-    return known
-
-
-def floats(*inputs):
-    """The inputs in one floating type: float32 stays, whole numbers become floats."""
-    arrays = [asarray(value) for value in inputs]
-    kind = result_type(*arrays) if arrays else float
-    kind = kind if issubdtype(kind, floating) else result_type(kind, 1.0)
-    return [array.astype(kind) for array in arrays]
-'''
+RULES = file_text(__package__, "jax_rules.txt")
 EVALUATE = '''def evaluate(*, {inputs}):
     """All OUTPUTS, by name. What has no value is NaN."""
     inputs = floats({inputs})

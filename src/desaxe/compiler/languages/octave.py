@@ -10,6 +10,7 @@ from ..text import with_short_temporaries
 from .protocol import Language, Module
 from .shared import (
     arrays_of,
+    described,
     functions_in,
     numbers,
     one_line,
@@ -54,9 +55,7 @@ def _help(module: Module) -> list[str]:
     names = ", ".join(symbol.name for symbol in module.outputs)
     given = ", ".join(symbol.name for symbol in module.inputs)
     rows = [f"{module.name.upper()}  [{names}] = {module.name}({given})", "", *map(one_line, module.head), ""]
-    for symbol in (*module.inputs, *module.outputs):
-        source = f" ({symbol.source})" if symbol.source else ""
-        rows.append(f"  {symbol.name} [{symbol.unit}]: {one_line(symbol.meaning)}{source}")
+    rows += [f"  {described(symbol)}" for symbol in (*module.inputs, *module.outputs)]
     rows += [
         "",
         "Numbers or arrays, which broadcast; what has no value is NaN.",

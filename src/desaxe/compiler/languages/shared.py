@@ -9,7 +9,7 @@ from textwrap import wrap
 from ..operations import Content
 from ..program import Program, renamed
 from ..text import with_short_temporaries, write_lines
-from .protocol import Module
+from .protocol import Module, Symbol
 
 _WORD = re.compile(r"\b(nan|inf|True|False)\b")
 
@@ -82,7 +82,7 @@ def functions_in(text: str) -> dict[str, str]:
     return {_DEFINED.search(block)[1]: block for block in blocks}  # type: ignore[index]
 
 
-_DEFINED = re.compile(r"^(?:static|function)\b.*?(\w+)\(", re.MULTILINE)
+_DEFINED = re.compile(r"^(?:static|function|def)\b.*?(\w+)\(", re.MULTILINE)
 
 
 def with_helpers(text: str, helpers: Mapping[str, str]) -> list[str]:
@@ -121,6 +121,22 @@ def documented(module: Module, use: Iterable[str]) -> str:
     return "\n".join(
         [*map(one_line, module.head), "", *use, "", *rows, "", "SPDX-License-Identifier: MIT", ""]
     )
+
+
+def comment(lines: Iterable[str]) -> str:
+    """A comment of these lines."""
+
+    def row(line: str) -> str:
+        indent = line[: len(line) - len(line.lstrip())]
+        return f" * {indent}{one_line(line)}".rstrip()
+
+    return "\n".join(["/*", *map(row, lines), " */"])
+
+
+def described(symbol: Symbol) -> str:
+    """The name of a symbol with unit, meaning and source, in a line."""
+    source = f" ({symbol.source})" if symbol.source else ""
+    return f"{symbol.name} [{symbol.unit}]: {one_line(symbol.meaning)}{source}"
 
 
 def one_line(text: str) -> str:

@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from ....compiler.languages.c.functions import static_function
 from ....compiler.languages.c.helpers import HELPERS, PRAGMAS
-from ....compiler.languages.c.language import comment, quoted, sine_and_cosine, tables_text
+from ....compiler.languages.c.language import quoted, sine_and_cosine, tables_text
 from ....compiler.languages.c.steps import RUNGE_KUTTA
 from ....compiler.languages.lifted import lifted
-from ....compiler.languages.shared import with_helpers
+from ....compiler.languages.shared import comment, with_helpers
 from ....compiler.program import Program
 from ....loads.load import Load, OverY, TableOverTheta
 from ....loads.stroke import OverStroke
