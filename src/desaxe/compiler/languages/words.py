@@ -96,8 +96,9 @@ _JAX = frozenset((
 _NUMBA = frozenset((
     *keyword.kwlist,
     # built in
-    "OverflowError", "RuntimeError", "TypeError", "ValueError", "abs", "bool", "dict", "enumerate", "float",
-    "int", "isinstance", "len", "list", "max", "min", "range", "set", "str", "sum", "tuple", "type", "zip",
+    "OverflowError", "RuntimeError", "TypeError", "ValueError", "abs", "bool", "dict", "enumerate", "exec",
+    "float", "globals", "int", "isinstance", "len", "list", "max", "min", "range", "set", "str", "sum",
+    "tuple", "type", "zip",
     # imported
     "Any", "ThreadPoolExecutor", "annotations", "append", "arange", "arcsinh", "argmax", "array", "asarray",
     "ascontiguousarray", "atan2", "broadcast_shapes", "broadcast_to", "can_cast", "concatenate", "copysign",

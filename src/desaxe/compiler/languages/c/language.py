@@ -166,7 +166,7 @@ class _Source:
             used = [one for one in (*extra, *self.names) if one in program.inputs]
             count, slopes = len(program.outputs) - 1, lifted(solver.slopes) if solver.slopes else None
             texts.append(static_function(f"{name}_angles", program, used, count, count))
-            result = "theta" if slopes else "angles"
+            result = next(iter(slopes.turns)) if slopes else "angles"
             angles = ", ".join([*self._passed(used, dict(zip(extra, extra, strict=True))), result])
             values = {"NAME": self.module.name, "ANGLES": angles}
             if slopes:

@@ -43,7 +43,8 @@ def emit_folder(
     called = numba_parts([*_sines(constants).texts, *_front().texts, *texts])
     helpers = called._replace(texts=tuple(text for text in called.texts if text not in texts))
     words = frozenset[str]().union(*map(words_of, helpers.texts))
-    names = [*functions_of(FRONT), *functions_of(HELPERS), *functions_of(SPELLINGS), *MADE, "BLOCK", *_TURNED]
+    front = (name for statement in source_of(FRONT).statements for name in statement.names)
+    names = [*front, *functions_of(HELPERS), *functions_of(SPELLINGS), *MADE, *_TURNED]
     imports = IMPORTS | dict.fromkeys(names, f".{HELPER_FILE}")
     texts_of = {
         name: module_text(docstring, own[name]._replace(imports=imports))
@@ -383,49 +384,34 @@ class _Writer:
             return f"broadcast(fill, OUTPUTS, meshed({inputs}, INPUTS)"
         return f"outer(fill_rows, {quoted(self.open_angle)}, OUTPUTS, {inputs}"
 
-    def part(self, name: str) -> str:
-        """The value of an input of the formulas at a point of a block."""
-        fixed = name in self.module.fixed or name in self.branch
-        return self.value(name) if fixed else f"value_at({name}, i)"
+    def passed(self, names: Iterable[str]) -> str:
+        """The arguments of a function, from the values at a point: of columns, sines and branch."""
+        order = [*self.names, *self.sines, *self.branch]
+        texts = {name: f"values[{k}]" for k, name in enumerate(order)}
+        cells = [texts.get(name) or self.value(name) for name in names]
+        return "*values" if cells == [*texts.values()] else ", ".join(cells)
 
     def block(self) -> str:
-        """The loops over a block of points, each input an array or a number."""
-        values = [self.part(name) for name in (*self.inputs, *self.sines, *self.branch)]
-        outs = [f"{symbol.name}_out" for symbol in self.module.outputs]
-        targets = [f"{out}[i]" for out in outs]
-        loop = "for i in range(size):"
-        first, *other = self.forms
-        results = [f"values[{k}]" for k in range(self.count)]
-        whole = 1 < self.count == len(self.forms[first].program.outputs)
-        store = (
-            _wrapped("", targets, " = values")
-            if whole
-            else [f"{t} = {r}" for t, r in zip(targets, results, strict=True)]
-        )
-        run = [*_wrapped(f"values = {first}(", values), *store]
-        rows = ["apart()", f"size = uint64({outs[0]}.size)"]
-        if not other:
-            rows = ['"""Fill the outputs of a block."""', *rows, loop, *_indented(1, run)]
+        """The loops over a block of points; a column is an array or a number."""
+        calls = [f"{form}({self.passed([*self.inputs, *self.sines, *self.branch])})" for form in self.forms]
+        loop = ["for i in range(size):", "    values = values_at(columns, i)"]
+        rows = ["apart()", "size = uint64(targets[0].size)"]
+        if len(calls) == 1:
+            about = '"""Fill the outputs of a block."""'
+            rows = [about, *rows, *loop, f"    store(targets, i, {calls[0]})"]
         else:
-            test = f"{TEST}({', '.join(map(self.part, self.test.inputs if self.test else ()))})"
-            again = [
-                *_wrapped(f"values = {other[0]}(", values),
-                *(f"{t} = {t} if wide else {r}" for t, r in zip(targets, results, strict=True)),
-            ]
+            about = (
+                '"""Fill the outputs of a block: `plain` first, then `stable` where that does not hold."""'
+            )
+            test = f"{TEST}({self.passed(self.test.inputs if self.test else ())})"
             rows = [
-                '"""Fill the outputs of a block: `plain` first, then `stable` where that does not hold."""',
-                *rows,
-                "count = uint64(0)",
-                loop,
+                *(about, *rows, "count = uint64(0)", *loop),
                 f"    count += uint64(1) if {test} else uint64(0)",
-                *_indented(1, run),
-                "if count < size:",
-                f"    {loop}",
-                f"        wide = {test}",
-                *_indented(2, again),
+                f"    store(targets, i, {calls[0]})",
+                *("if count < size:", *_indented(1, loop)),
+                f"        store_unless({test}, targets, i, {calls[1]})",
             ]
-        names = [n for n in (*self.names, *self.sines, *self.branch) if n not in self.module.fixed]
-        return NJIT + function_text("block", [*names, *outs], rows)
+        return NJIT + function_text("block", ["columns", "targets"], rows)
 
     def columns(self) -> int:
         """The number of arrays that a block reads."""
@@ -434,23 +420,27 @@ class _Writer:
     def fill(self) -> str:
         """Blocks of columns."""
         count = len(self.names)
-        parts = [f"part_of(columns[{k}], buffers[{k}], start, size)" for k in range(count)]
-        sines = [f"buffers[{count + k}, :size]" for k in range(len(self.sines))]
         rows = [
             '"""Fill the outputs of points; a column of one number is that of all points."""',
             f"buffers = empty(({self.columns()}, BLOCK))",
             "hold(columns, buffers)",
             *self.fixed_sines(),
             "for start in range(first, last, BLOCK):",
-            "    stop = min(start + BLOCK, last)",
-            "    size = stop - start",
+            "    size = min(start + BLOCK, last) - start",
+            "    parts = parts_at(columns, buffers, start, size)",
         ]
         if self.open_angle:
-            rows.append(f"    sines({', '.join([parts[self.names.index(self.open_angle)], *sines])})")
-        else:
-            sines = self.sines
-        rows += _indented(1, self.block_call([*parts, *sines]))
+            place = self.names.index(self.open_angle)
+            rows.append(f"    turns = buffers[{count}, :size], buffers[{count + 1}, :size]")
+            rows.append(f"    sines(parts[{place}], turns[0], turns[1])")
+        turns = ["turns"] if self.open_angle else self.fixed_turns()
+        columns = " + ".join(["parts", *turns, *(["(branch,)"] if self.branch else [])])
+        rows.append(f"    block({columns}, slices(targets, start, start + size))")
         return "@compiled\n" + function_text("fill", ["columns", "first", "last", "branch", "targets"], rows)
+
+    def fixed_turns(self) -> list[str]:
+        """The sine and cosine of an angle that is fixed, as a tuple."""
+        return [f"({', '.join(self.sines)})"] if self.sines and not self.open_angle else []
 
     def fixed_sines(self) -> list[str]:
         """The line that takes sine and cosine of an angle that is fixed."""
@@ -459,24 +449,16 @@ class _Writer:
 
     def fill_rows(self) -> str:
         """Rows of a grid, along which the columns vary that are arrays."""
-        count = self.columns() if self.open_angle else len(self.names)
-        parts = [f"row_part(columns[{k}], row)" for k in range(count)]
-        parts += [] if self.open_angle else self.sines
+        parts = ["rows_at(columns, row)", *self.fixed_turns(), *(["(branch,)"] if self.branch else [])]
         rows = [
             '"""Fill rows of a grid: a column is an array along a row, or numbers of rows with a period."""',
             *self.fixed_sines(),
             "for row in range(first, last):",
-            "    start, stop = row * length, (row + 1) * length",
-            *_indented(1, self.block_call(parts)),
+            f"    block({' + '.join(parts)}, slices(targets, row * length, (row + 1) * length))",
         ]
         return "@compiled\n" + function_text(
             "fill_rows", ["columns", "first", "last", "length", "branch", "targets"], rows
         )
-
-    def block_call(self, parts: Sequence[str]) -> list[str]:
-        """The call that fills a part of the targets."""
-        targets = [f"targets[{k}][start:stop]" for k in range(self.count)]
-        return _wrapped("block(", [*parts, *self.branch, *targets])
 
     def call(self, name: str, road: str, what: str) -> str:
         """A function of arrays."""

@@ -36,28 +36,11 @@ def compiled(function):
         return njit(error_model="numpy", nogil=True)(function)
 
 
-def value_at(part, i):
-    """The element of an array; a number is that of all points."""
-    return part if isinstance(part, float) else part[i]
-
-
-@overload(value_at, inline="always")
-def _value_at(part, i):
-    if isinstance(part, types.Array):
-        return lambda part, i: part[i]
-    return lambda part, i: part
-
-
-def row_part(column, row):
-    """The array that varies along a row, or the number that a row has."""
-    return column if isinstance(column, ndarray) else column[0][row // column[1] % column[0].size]
-
-
-@overload(row_part, inline="always")
-def _row_part(column, row):
-    if isinstance(column, types.Array):
-        return lambda column, row: column
-    return lambda column, row: column[0][row // column[1] % column[0].size]
+@njit(error_model="numpy")
+def row_number(column, row):
+    """The number of a row of a grid: numbers, each for so many rows, round and round."""
+    numbers, period = column
+    return numbers[row // period % numbers.size]
 
 
 @njit(error_model="numpy")
@@ -72,6 +55,35 @@ def hold(columns, buffers):
     for k in range(len(columns)):
         if columns[k].size == 1:
             buffers[k] = columns[k][0]
+
+
+def unrolled(parameters, over, cell, other=""):
+    """A function with a cell for each element of a tuple, another for what is no array: no loop in numba."""
+
+    def typed(kinds):
+        cells = [cell if isinstance(kind, types.Array) or not other else other for kind in kinds]
+        cells = [one.format(k=k) for k, one in enumerate(cells)]
+        body = "; ".join(cells) if " = " in cell else f"return ({', '.join(cells)},)"
+        exec(f"def loop({parameters}): {body}", globals(), scope)
+        return scope["loop"]
+
+    scope = {"typed": typed}
+    exec(f"def stub({parameters}): pass", scope)
+    exec(f"def types_of({parameters}): return typed({over})", scope)
+    overload(scope["stub"])(scope["types_of"])
+    return scope["stub"]
+
+
+values_at = unrolled("columns, i", "columns", "columns[{k}][i]", "columns[{k}]")
+parts_at = unrolled(
+    "columns, buffers, start, size", "columns", "part_of(columns[{k}], buffers[{k}], start, size)"
+)
+rows_at = unrolled("columns, row", "columns", "columns[{k}]", "row_number(columns[{k}], row)")
+slices = unrolled("targets, start, stop", "targets", "targets[{k}][start:stop]")
+store = unrolled("targets, i, values", "targets", "targets[{k}][i] = values[{k}]")
+store_unless = unrolled(
+    "wide, targets, i, values", "targets", "targets[{k}][i] = targets[{k}][i] if wide else values[{k}]"
+)
 
 
 def column_of(name, value):
