@@ -25,13 +25,8 @@ static Values *updated(fmi2Component c) {
   return x;
 }
 
-static int is_parameter(fmi2ValueReference place) {
-  return place >= FIRST_PARAMETER && place < FIRST_PARAMETER + N_PARAMETERS;
-}
-
-static int is_input(fmi2ValueReference place) {
-  return place >= FIRST_INPUT && place < FIRST_INPUT + N_INPUTS;
-}
+#define IS_PARAMETER(PLACE) ((PLACE) >= FIRST_PARAMETER && (PLACE) < FIRST_PARAMETER + N_PARAMETERS)
+#define IS_INPUT(PLACE) ((PLACE) >= FIRST_INPUT && (PLACE) < FIRST_INPUT + N_INPUTS)
 
 FMI2_Export const char *fmi2GetTypesPlatform(void) {
   return fmi2TypesPlatform;
@@ -135,8 +130,8 @@ FMI2_Export fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference pla
                                    const fmi2Real values[]) {
   Values *x = values_of(c);
   for (size_t k = 0; k < n; k++) {
-    if (!is_input(places[k]) && !(is_parameter(places[k]) && x->mode <= INITIALISING)) {
-      return refuse(c, is_parameter(places[k]) ? "a parameter is set before initialisation mode is left"
+    if (!IS_INPUT(places[k]) && !(IS_PARAMETER(places[k]) && x->mode <= INITIALISING)) {
+      return refuse(c, IS_PARAMETER(places[k]) ? "a parameter is set before initialisation mode is left"
                                                : "only parameters and inputs can be set");
     }
     x->v[places[k]] = values[k];
@@ -182,7 +177,7 @@ FMI2_Export fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2V
   double seeds[N_VALUES] = {0.0};
   for (size_t k = 0; k < n_by; k++) {
     const int is_state = HAS_STATES && (by[k] == THETA || by[k] == OMEGA) && x->mode > INITIALISING;
-    if (!is_state && !is_input(by[k]) && !is_parameter(by[k]) && by[k] != 0) {
+    if (!is_state && !IS_INPUT(by[k]) && !IS_PARAMETER(by[k]) && by[k] != 0) {
       return refuse(c, "a directional derivative is by inputs, continuous states, parameters and time");
     }
     seeds[by[k]] += seed[k];
@@ -384,12 +379,10 @@ FMI2_Export fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKin
   return kind == fmi2Terminated ? fmi2OK : fmi2Discard;
 }
 
-FMI2_Export fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value) {
-  (void)c, (void)kind, (void)value;
-  return fmi2Discard;
-}
-
-FMI2_Export fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String *value) {
-  (void)c, (void)kind, (void)value;
-  return fmi2Discard;
-}
+#define NO_STATUS(NAME)                                                                                       \
+  FMI2_Export fmi2Status fmi2Get##NAME##Status(fmi2Component c, const fmi2StatusKind kind, fmi2##NAME *value) { \
+    (void)c, (void)kind, (void)value;                                                                         \
+    return fmi2Discard;                                                                                       \
+  }
+NO_STATUS(Integer)
+NO_STATUS(String)

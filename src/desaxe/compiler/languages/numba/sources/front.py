@@ -38,7 +38,7 @@ def compiled(function):
 
 @njit(error_model="numpy")
 def row_number(column, row):
-    """The number of a row of a grid: numbers, each for so many rows, round and round."""
+    """Look up what holds in a row of a grid: a column of numbers, each for a period of rows."""
     numbers, period = column
     return numbers[row // period % numbers.size]
 
