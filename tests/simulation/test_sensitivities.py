@@ -43,8 +43,8 @@ def test_sensitivities_are_those_of_60_digits(parameter):
     start = {"torque": -0.5, "theta0": 1.0, "omega_start": 12.0, "t_end": 0.05}
     found = dx.simulate(**start, times=[0.05], wrt=parameter, **LOADED)
     theta, omega = true_slopes(parameter, LOADED, -0.5, 1.0, 12.0, 0.05, 13)
-    assert found[f"theta_wrt_{parameter}"][0] == pytest.approx(theta, rel=1e-9)
-    assert found[f"omega_wrt_{parameter}"][0] == pytest.approx(omega, rel=1e-9)
+    assert found[f"theta_wrt_{parameter}"][0] == pytest.approx(theta, rel=1e-12)
+    assert found[f"omega_wrt_{parameter}"][0] == pytest.approx(omega, rel=1e-12)
 
 
 def test_standstills_of_a_pendulum():

@@ -15,7 +15,7 @@ from ..loads.angles import shift
 from ..mechanism.names import LENGTHS, sensitivity
 from .drive import Curve, PositionCurve, SumCurve
 from .events import V
-from .law import state_of
+from .law import Law, state_of
 from .march import March
 from .result import Event
 from .tangents import Tangents
@@ -45,10 +45,10 @@ class Shifts:
             return none  # it breaks away without a jump of alpha, or at an instant of its own
         if after.law.rests:
             return y * [[0.0], [-1.0]]
-        if before.law.drive == after.law.drive and before.law.direction == after.law.direction:
-            return none  # the guide changes sides, where it does not press
         theta, omega = state_of(self.model, *after.y[: V + 1].tolist())
         instant = after.start, theta, omega
+        if before.law.direction == after.law.direction and not _jumps(before.law, after.law, instant):
+            return none  # a load bends, or the guide changes sides, where it does not press
         left, right = (float(piece.law.alpha(*instant)) for piece in (before, after))
         least = SAME * (abs(left) + abs(right))
         if abs(left - right) <= least:
@@ -141,3 +141,10 @@ class Shifts:
         names = [sensitivity(kept[0], "theta"), *(sensitivity(n, p) for n in kept for p in LENGTHS)]
         known = self.tangents.values(names, theta)
         return self.tangents.by_lengths({p: float(shift(kept, p, known)) for p in LENGTHS})
+
+
+def _jumps(before: Law, after: Law, instant: tuple[float, float, float]) -> bool:
+    """True where a load that changes has another value."""
+    changes = [pair for pair in zip(before.drive, after.drive, strict=True) if pair[0] is not pair[1]]
+    values = [(float(old.at(*instant)), float(new.at(*instant))) for old, new in changes]
+    return any(abs(old - new) > SAME * (abs(old) + abs(new)) for old, new in values)
