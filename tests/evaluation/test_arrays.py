@@ -270,3 +270,34 @@ def test_an_out_that_does_not_fit_is_refused(names, out, error, complaint):
 def test_a_number_goes_into_no_array():
     with pytest.raises(TypeError, match="out= is for arrays"):
         dx.evaluate("V_C", **POINT, out=np.empty(()))
+
+
+MANY = np.linspace(-7.0, 7.0, 300_001)
+READ_ONLY = np.linspace(-7.0, 7.0, 900)
+READ_ONLY.flags.writeable = False
+LAST = math.asin((SIZES["BC"] - SIZES["AB"] - 0.2) / SIZES["AB"])
+
+
+@pytest.mark.parametrize(
+    "inputs",
+    [
+        {"theta": READ_ONLY, "ec": 0.01},
+        {"theta": READ_ONLY.reshape(30, 30).T, "ec": 0.0},
+        {"theta": READ_ONLY[:, None], "ec": np.linspace(-0.3, 0.3, 7)},
+        {"theta": np.where(READ_ONLY > 6.0, 1e9, READ_ONLY), "ec": np.float64(0.02)},
+        {"theta": LAST + 2.0**-52 * np.arange(-40.0, 40.0), "ec": 0.2},
+        {"theta": READ_ONLY, "ec": "10 mm", "omega0": np.where(READ_ONLY > 6.0, 1e70, 3.0)},
+        *({"theta": MANY, "ec": 0.1 * np.cos(MANY), "threads": threads} for threads in (1, 2, 3)),
+    ],
+)
+def test_a_remembered_request_gives_what_a_new_one_gives(inputs, monkeypatch):
+    names = ["V_C", "a_C", "status"]
+    inputs = {**SIZES, **inputs}
+    again = [dx.evaluate(names, **inputs) for _ in range(3)]
+    monkeypatch.setattr("desaxe.evaluation.values._KNOWN", {})
+    new = dx.evaluate(names, **inputs)
+    for name in names:
+        assert all(one[name].tobytes() == new[name].tobytes() for one in again)
+    if np.ndim(inputs["omega0"]):
+        assert (new["status"][inputs["omega0"] > 1e60] == 4).all()
+        assert np.isnan(new["a_C"][inputs["omega0"] > 1e60]).all()

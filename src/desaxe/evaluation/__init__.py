@@ -12,7 +12,6 @@ labels         units and CF attributes
 quality        condition numbers and error bounds
 values         values of names from a dict of inputs: the body of `evaluate`
 function       a prepared callable of some inputs
-call_cache     repeated calls of one shape: a cache of checked calls
 labelled       `evaluate` of labelled arrays
 dask_blocks    a function of many outputs over the chunks of Dask arrays
 in_units       labelled results in other units

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
-from ..loads.along_motion import SPEEDS
 from ..mechanism.inputs import INPUTS, SAFE, Input, is_good, limit_of
 from ..mechanism.messages import amount, named
 from ..mechanism.read import read_array
@@ -18,13 +17,14 @@ from ..runtime.request import Request, as_number
 from ..runtime.threads import run_in_blocks
 from ..support.memory import require
 from ..support.shown import shown
-from .call_cache import planned
 from .under_loads.request import LoadInputs
 
 Array = NDArray[Any]
 
 NESTED = 200_000  # points from which a nest of loops, a kernel of its own, is worth its compilation
+SMALL = 20_000  # points: so few always fit into memory
 INNERMOST = 64  # points: a shorter innermost loop costs more to start than it saves
+LEAST, MOST = SAFE
 FLOAT, STATUS = np.dtype(np.float64), np.dtype(np.int8)
 
 
@@ -52,49 +52,50 @@ def evaluate_arrays(
     threads: int | None,
     out: Any,
     loads: LoadInputs | None = None,
+    keys: dict[Any, KernelKey] | None = None,
 ) -> dict[str, Array]:
     """The values by requested name, in the broadcast shape.
 
     inputs   those that are numbers or arrays of the caller; others follow from `loads`
+    keys     the kernels of the request that are remembered
     """
-    tables: dict[str, Any] = {}
-    functions: dict[str, Any] = {}
-    if loads is not None:
-        tables = loads.tables()
-        functions = _functions(loads, inputs, given, wanted.shown) if loads.functions else {}
-    if (out is None or type(out) is dict) and (loads is None or "theta" in wanted.inputs):
-        ready = planned(wanted, {**given, **functions} if functions else given, out, threads, tables)
-        if ready is not None:
-            return ready
-    refuse_other_labels({name: given.get(name) for name in inputs})
-    arrays = {name: as_array(name, given.get(name), inputs, wanted.shown) for name in inputs}
-    shape = broadcast_shape(arrays)
-    places = outputs_for(wanted.shown, shape, out)
+    names = wanted.shown
+    scalars: dict[str, Any] = {}
+    arrays: dict[str, Array] = {}
+    labelled = False
+    for name in inputs:
+        value = given.get(name)
+        if type(value) is float and (LEAST < value < MOST or is_good(name, value)):
+            scalars[name] = value
+        else:
+            arrays[name] = as_array(name, value, inputs, names)
+            labelled = labelled or type(value) is not np.ndarray
+    if labelled:
+        refuse_other_labels({name: given.get(name) for name in inputs})
+    shapes = {array.shape for array in arrays.values()}
+    shape = shapes.pop() if len(shapes) == 1 else broadcast_shape(arrays)
+    places = outputs_for(names, shape, out)
     buffers = places if out is None else scratch_for(places, arrays.values())
-    if all(buffer.size for buffer in buffers.values()):
-        scalars, loops = loops_of(arrays | {n: np.asarray(f) for n, f in functions.items()}, shape)
-        fill(wanted, {**scalars, **tables}, loops, list(buffers.values()), threads)
+    if 0 not in shape:
+        numbers = [name for name, array in arrays.items() if array.size == 1]
+        scalars |= {name: arrays.pop(name).item() for name in numbers}
+        if loads is not None:
+            scalars |= loads.tables()
+            for name, made in _functions(loads, {**scalars, **arrays}).items() if loads.functions else ():
+                (arrays if np.ndim(made) else scalars)[name] = made if np.ndim(made) else float(made)
+        loops = loops_over(arrays, shape)
+        loops = loops if loads is None else loops.taken_by(wanted)
+        fill(wanted, scalars, loops, list(buffers.values()), threads, keys=keys)
     return copied_back(places, buffers, out is None)
 
 
-def _functions(
-    loads: LoadInputs, inputs: Sequence[str], given: Mapping[str, Any], names: Sequence[str]
-) -> dict[str, Any]:
+def _functions(loads: "LoadInputs", given: Mapping[str, Any]) -> dict[str, Any]:
     """The values of loads that are no tables, and their derivatives."""
-    needed = {"theta", *(SPEEDS if loads.motion is None else inputs)}
-    numbers = {n: numeric(n, given[n], names) for n in needed if given.get(n) is not None}
     motion = loads.motion
     if motion is None:
-        return loads.at(numbers)
-    if all(isinstance(number, float) for number in numbers.values()):
-        numbers = {name: np.array(number) for name, number in numbers.items()}
+        return loads.at(given)
+    numbers = {name: np.asarray(value) for name, value in given.items() if name in INPUTS}
     return loads.at(numbers, evaluate_arrays(motion, motion.inputs, numbers, 1, None))
-
-
-def loops_of(arrays: Mapping[str, Array], shape: tuple[int, ...]) -> tuple[dict[str, float], Loops]:
-    """Arrays that broadcast to a shape: those of one element as numbers, the others along loops."""
-    scalars = {name: a.item() for name, a in arrays.items() if a.size == 1}
-    return scalars, loops_over({name: a for name, a in arrays.items() if a.size != 1}, shape)
 
 
 def refuse_other_labels(given: Mapping[str, Any]) -> None:
@@ -173,8 +174,9 @@ def broadcast_shape(arrays: Mapping[str, Array]) -> tuple[int, ...]:
 def outputs_for(names: Sequence[str], shape: tuple[int, ...], out: Any) -> dict[str, Array]:
     """The output arrays: new ones, or those of `out`, checked."""
     if out is None:
-        size = sum(dtype_of(name).itemsize for name in names) * prod(shape)
-        require(size, f"a result of the shape {tuple(shape)} and {len(names)} names")
+        if prod(shape) > SMALL:
+            size = sum(dtype_of(name).itemsize for name in names) * prod(shape)
+            require(size, f"a result of the shape {tuple(shape)} and {len(names)} names")
         return {name: np.empty(shape, dtype_of(name)) for name in names}
     if not names and not isinstance(out, Mapping):
         raise ValueError(f"out = {shown(out)}: no name is given, so there is nothing to fill")
@@ -222,20 +224,38 @@ def copied_back(places: Mapping[str, Array], buffers: Mapping[str, Array], fresh
 
 def fill(
     wanted: Request,
-    scalars: dict[str, float],
+    scalars: Mapping[str, Any],
     loops: Loops,
     outs: Sequence[Array],
     threads: int | None,
     key: KernelKey | None = None,
+    keys: dict[Any, KernelKey] | None = None,
 ) -> None:
     """Fill contiguous outputs from scalars and the columns along loops.
 
-    `key`: the kernel, where these points are a block of more that it was chosen for.
+    key    the kernel, where these points are a block of more that it was chosen for
+    keys   the kernels of a request that are remembered
     """
-    if _fill(wanted, scalars, loops, outs, threads, key):
-        return
     sizes, columns, axis_of = loops
-    masks = [(are_beyond(name, column), axis_of[name]) for name, column in columns.items()]
+    outs = [out.reshape(sizes) for out in outs]
+    chosen = key is not None
+    if key is None:
+        key = key_of(wanted, scalars, columns, axis_of, len(sizes), keys)
+    if columns:
+        left = run_in_blocks(key, {**scalars, **columns}, outs, threads)
+        if (len(columns) > 1 or "theta" not in columns) and (chosen or left or not tells_unsafe(key)):
+            _refuse_beyond(columns, axis_of, sizes, outs)
+        return
+    point = point_of(key.names, key.form, key.fixed, key.accuracy)
+    for out, value in zip(outs, point.run(scalars), strict=True):
+        out[...] = value
+
+
+def _refuse_beyond(
+    columns: Mapping[str, Array], axis_of: Mapping[str, int], sizes: Sequence[int], outs: Sequence[Array]
+) -> None:
+    """Bad inputs are those beyond their range, too."""
+    masks = [(are_beyond(n, column), axis_of[n]) for n, column in columns.items() if n != "theta"]
     beyond = [spread(mask, axis, sizes) for mask, axis in masks if mask.any()]
     if beyond:
         points = np.flatnonzero(np.logical_or.reduce(beyond))
@@ -243,41 +263,20 @@ def fill(
             out.reshape(-1)[points] = BAD_INPUT if out.dtype == STATUS else np.nan
 
 
-def _fill(
-    wanted: Request,
-    scalars: dict[str, float],
-    loops: Loops,
-    outs: Sequence[Array],
-    threads: int | None,
-    key: KernelKey | None = None,
-) -> bool:
-    """Compute all points; True if the kernel looks for inputs that are beyond their range and finds none."""
-    sizes, columns, axis_of = loops.taken_by(wanted)
-    asked = wanted, scalars, columns, axis_of, len(sizes)
-    hopeful = False
-    if key is None:
-        key = key_of(*asked)
-        hopeful = tells_unsafe(key)
-    outs = [out.reshape(sizes) for out in outs]
-    if not columns:
-        point = point_of(key.names, key.form, key.fixed, key.accuracy)
-        for out, value in zip(outs, point.run(scalars), strict=True):
-            out[...] = value
-        return False
-    left = run_in_blocks(key, {**scalars, **columns}, outs, threads)
-    return hopeful and not left
-
-
 # ---- loops: a column of designs over a row of angles needs the sine of an angle once, not once a design ----
 
 
 def loops_over(arrays: Mapping[str, Array], shape: Sequence[int]) -> Loops:
     """The loops for arrays that broadcast to a shape; none of them is a number."""
-    nested = _nested(arrays, shape) if prod(shape) >= NESTED else None
+    size = prod(shape)
+    nested = _nested(arrays, shape) if size >= NESTED else None
     if nested is not None:
         return nested
-    columns = {name: _column(array, shape) for name, array in arrays.items()}
-    return Loops((prod(shape),), columns, dict.fromkeys(columns, 0))
+    columns = {
+        name: array.reshape(-1) if array.size == size and array.flags.c_contiguous else _column(array, shape)
+        for name, array in arrays.items()
+    }
+    return Loops((size,), columns, dict.fromkeys(columns, 0))
 
 
 def _nested(arrays: Mapping[str, Array], shape: Sequence[int]) -> Loops | None:

@@ -8,7 +8,7 @@ from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LOADS
 from ..support.answer import Answer
 from ..support.forks import IMPORTS
-from .values import values
+from .values import evaluate_loaded, values
 
 STEADY = 0.0  # the default of alpha; an alpha of 0 in a call is another object
 
@@ -97,11 +97,11 @@ def evaluate(
         loads = (m_crank, m_rod, m_slider, I_crank, I_rod, r_crank, r_rod, F_X, F_Y, g_X, g_Y, mu)
         given.update((name, load) for name, load in zip(LOADS, loads, strict=True) if load is not None)
         if sliders is None and any(map(callable, loads)):
-            with IMPORTS:
-                from .under_loads.loaded import evaluate_loaded as values_of
-                from .under_loads.quality import evaluate_loaded_quality
-
+            values_of = evaluate_loaded
             if quality:
+                with IMPORTS:
+                    from .under_loads.quality import evaluate_loaded_quality
+
                 return evaluate_loaded_quality(names, given, branch, accuracy, threads, out)
     if sliders is not None:
         if quality:

@@ -17,8 +17,8 @@ from ..runtime.request import Request
 from .arrays import Loops, copied_back, dtype_of, evaluate_arrays, fill, outputs_for, scratch_for
 from .axes import Outer, require_inputs
 from .labels import Output, attributes
-from .under_loads.loaded import evaluate_loaded
 from .under_loads.request import LoadInputs, request_of
+from .values import evaluate_loaded
 
 Array = NDArray[Any]
 
@@ -103,7 +103,7 @@ class Points(NamedTuple):
             along.update(self.loads.at({"theta": along["theta"]}))
             axes |= {name: axes["theta"] for name in self.loads.functions if name in columns}
         loops = Loops(tuple(values[name].size for name in self.dims) or (1,), columns, axes)
-        fill(self.wanted, scalars, loops, outs, threads, self.key)
+        fill(self.wanted, scalars, loops.taken_by(self.wanted), outs, threads, self.key)
 
     def _of_motion(self, columns: Mapping[str, Array], outs: Sequence[Array], threads: int | None) -> None:
         """Fill outputs under loads over the motion, whose values vary over all dimensions."""

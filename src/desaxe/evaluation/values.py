@@ -5,98 +5,134 @@ A single point stays in this file and needs only `math`; as soon as an input is 
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from types import MappingProxyType
+from typing import Any
 
+from ..loads.load import Load
+from ..loads.resolve import split
 from ..mechanism.inputs import SAFE, is_good
-from ..mechanism.own import register
-from ..runtime.point import PointFunction, point_of
-from ..runtime.request import (
-    Request,
-    accuracy_of,
-    as_number,
-    check_common,
-    is_steady,
-    request,
-    several,
-    standstill,
-)
+from ..mechanism.own import Register, register
+from ..runtime.point import point_of
+from ..runtime.request import accuracy_of, as_number, check_common, is_steady, several, standstill
 from ..support.forks import IMPORTS
 from ..support.interrupts import import_whole
+from .under_loads.request import LoadInputs, request_of
 
-if TYPE_CHECKING:
-    from .under_loads.request import LoadInputs
+NO_LOADS: Mapping[str, Load] = MappingProxyType({})
+LEAST, MOST = SAFE
+MOST_KNOWN = 1024  # requests that are remembered
 
 
 def values(
     names: str | Sequence[str],
-    given: dict[str, Any],
+    given: Mapping[str, Any],
     branch: int = 1,
     accuracy: Any = "standard",
     threads: int | None = None,
     out: Any = None,
+    loads: Mapping[str, Load] = NO_LOADS,
 ) -> Any:
-    """The value of one name, or a dict name -> value; see `evaluate`. Inputs that are None are not given."""
+    """The value of one name, or a dict name -> value; see `evaluate`. Inputs that are None are not given.
+
+    loads   those that vary with the motion; derivatives are total ones then
+    """
     wanted = (names,) if isinstance(names, str) else several(names)
-    omega, speed_given = given.get("omega"), given.get("omega0") is not None
-    if threads is not None or (omega is not None and speed_given) or type(branch) is not int:
+    if threads is not None or given.get("omega") is not None or type(branch) is not int:
         check_common(given, branch, threads)
     if type(accuracy) is not str or accuracy != "standard":
         accuracy = accuracy_of(accuracy)
     present = tuple([name for name, value in given.items() if value is not None])
     now = register()
-    key = wanted, present, is_steady(given.get("alpha")), branch, accuracy, now
-    if not speed_given and omega is None and "status" in wanted:
-        given = {**given, "omega0": standstill(wanted, given, now)}
-    known = _KNOWN.get(key)
-    if known is None:
+    key: tuple[Any, ...] = wanted, present, is_steady(given.get("alpha")), branch, accuracy, now
+    if loads:
+        key += tuple([(name, load.variant) for name, load in loads.items()])
+    call = _KNOWN.get(key)
+    if call is None:
         if len(_KNOWN) > MOST_KNOWN:
             _KNOWN.clear()
-        asked = request(wanted, given, branch, accuracy, now)
-        _KNOWN[key] = known = asked, point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
-    asked, point = known
-    answer = answer_of(asked, point, point.inputs, given, threads, out)
+        call = _KNOWN[key] = CheckedRequest(wanted, given, loads, branch, accuracy, now)
+    if call.speed is not None:
+        given = {**given, "omega0": call.speed}
+    answer = call.answer(given, threads, out, loads)
     if type(answer) is tuple:
         return answer[0] if isinstance(names, str) else dict(zip(wanted, answer, strict=True))
     return answer[names] if isinstance(names, str) else answer
 
 
-def answer_of(
-    asked: Request,
-    point: PointFunction,
-    inputs: Sequence[str],
+def evaluate_loaded(
+    names: str | Sequence[str],
     given: Mapping[str, Any],
-    threads: int | None,
-    out: Any,
-    loads: "LoadInputs | None" = None,
+    branch: int,
+    accuracy: str | float = "standard",
+    threads: int | None = None,
+    out: Any = None,
 ) -> Any:
-    """The values of a request: a tuple at a point, a dict by name over arrays.
+    """`values` where F_X or F_Y may vary with the motion."""
+    numbers, loads = split({name: value for name, value in given.items() if value is not None})
+    return values(names, numbers, branch, accuracy, threads, out, loads)
+
+
+class CheckedRequest:
+    """A request that is checked and remembered, with its function of a point.
 
     inputs   those that are numbers or arrays of the caller
-    loads    those that follow from loads which vary with the motion
+    forces   the loads that matter
+    speed    omega0 where it is not given and has no effect
+    keys     the kernels of arrays so far, by what they go by
     """
-    numbers = []
-    for name in inputs:
-        value = given.get(name)
-        if type(value) is not float or not LEAST < value < MOST:
-            if type(value) is _ARRAY[0]:
-                value = None
-            elif type(value) is not float or not is_good(name, value):
-                value = as_number(name, value, inputs, asked.shown)
-            if value is None:  # not a number: an array
-                return _of_arrays(asked, inputs, given, threads, out, loads)
-        numbers.append(value)
-    if out is not None:
-        raise TypeError("out= is for arrays, but every input is a number")
-    if loads is None:
-        return point.function(*numbers)
-    return point.run(loads.at_point(dict(zip(inputs, numbers, strict=True))))
+
+    def __init__(
+        self,
+        names: tuple[str, ...],
+        given: Mapping[str, Any],
+        loads: Mapping[str, Load],
+        branch: int,
+        accuracy: str,
+        known: Register,
+    ) -> None:
+        self.speed: float | None = None
+        if "status" in names and given.get("omega0") is None and given.get("omega") is None:
+            self.speed = standstill(names, {**given, **dict.fromkeys(loads, 0.0)}, known)
+            given = {**given, "omega0": self.speed}
+        self.asked, self.inputs, own = request_of(names, given, loads, branch, accuracy, known)
+        self.forces = None if own is None else tuple(own.loads)
+        self.functions = () if own is None else own.functions
+        asked = self.asked
+        self.point = point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
+        if own is None:
+            self.inputs = self.point.inputs
+        self.keys: dict[Any, Any] = {}
+
+    def answer(
+        self, given: Mapping[str, Any], threads: int | None, out: Any, loads: Mapping[str, Load]
+    ) -> Any:
+        """The values: a tuple at a point, a dict by name over arrays."""
+        numbers = []
+        for name in self.inputs:
+            value = given.get(name)
+            if type(value) is not float or not LEAST < value < MOST:
+                if type(value) is _ARRAY[0]:
+                    value = None
+                elif type(value) is not float or not is_good(name, value):
+                    value = as_number(name, value, self.inputs, self.asked.shown)
+                if value is None:  # not a number: an array
+                    return _of_arrays(self, given, threads, out, self.of_loads(loads))
+            numbers.append(value)
+        if out is not None:
+            raise TypeError("out= is for arrays, but every input is a number")
+        own = self.of_loads(loads)
+        if own is None:
+            return self.point.function(*numbers)
+        return self.point.run(own.at_point(dict(zip(self.inputs, numbers, strict=True))))
+
+    def of_loads(self, loads: Mapping[str, Load]) -> LoadInputs | None:
+        """The inputs that follow from loads."""
+        if self.forces is None:
+            return None
+        return LoadInputs({name: loads[name] for name in self.forces}, self.functions)
 
 
-LEAST, MOST = SAFE
-MOST_KNOWN = 1024  # requests that are remembered
-_KNOWN: dict[Any, tuple[Request, PointFunction]] = {}
-
-
+_KNOWN: dict[Any, CheckedRequest] = {}
 _ARRAY: list[type] = [object]  # NumPy's type of array, when it is known
 
 
@@ -111,27 +147,23 @@ def _evaluate_arrays() -> Callable[..., dict[str, Any]]:
 
 
 def _of_arrays(
-    asked: Request,
-    inputs: Sequence[str],
-    given: Mapping[str, Any],
-    threads: int | None,
-    out: Any,
-    loads: "LoadInputs | None",
+    call: CheckedRequest, given: Mapping[str, Any], threads: int | None, out: Any, loads: LoadInputs | None
 ) -> dict[str, Any]:
     """The values for arrays: labelled ones broadcast by their dimensions, others by position."""
     evaluate_arrays = _evaluate_arrays()
+    inputs, names = call.inputs, call.asked.shown
     for name in inputs:
         value = given.get(name)
         if type(value) is float or type(value) is _ARRAY[0]:
             continue
         if type(value) is str:
-            given = {**given, name: as_number(name, value, inputs, asked.shown)}
+            given = {**given, name: as_number(name, value, inputs, names)}
         elif out is None and bool(getattr(value, "dims", None)) and hasattr(value, "coords"):
             with IMPORTS:
                 from .labelled import evaluate_labelled
 
             def run(plain: dict[str, Any]) -> dict[str, Any]:
-                return _of_arrays(asked, inputs, plain, threads, None, loads)
+                return _of_arrays(call, plain, threads, None, loads)
 
-            return evaluate_labelled(run, asked.shown, {name: given.get(name) for name in inputs})
-    return evaluate_arrays(asked, inputs, given, threads, out, loads)
+            return evaluate_labelled(run, names, {name: given.get(name) for name in inputs})
+    return evaluate_arrays(call.asked, inputs, given, threads, out, loads, call.keys)

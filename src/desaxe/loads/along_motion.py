@@ -54,6 +54,11 @@ class OfMotion(Load):
         return tuple(dict.fromkeys(p for c in self.needs for p in BY.get(c, ("theta", *LENGTHS))))
 
     @property
+    def variant(self) -> tuple[Any, ...]:
+        """The key of the load in a request."""
+        return (*super().variant, self.needs, self.has_ways)
+
+    @property
     def follows_speed(self) -> bool:
         """True where the load depends on how fast the crank turns."""
         return not set(MOVING).isdisjoint(self.needs)

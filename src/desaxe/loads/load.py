@@ -54,6 +54,11 @@ class Load(ABC):
         return True
 
     @property
+    def variant(self) -> tuple[Any, ...]:
+        """What a request under the load goes by: not its content, which is an argument of kernels."""
+        return type(self), self.centre, self.has_slope
+
+    @property
     def identity(self) -> str:
         """A digest of all that the load is: that of a function is of its values over a period."""
         return sha256(self._content().encode()).hexdigest()
@@ -223,6 +228,11 @@ class OverY(Load):
     parameters = ("theta", "ec", "AB", "BC")
     place = "Y"  # that it is over, in words
     rises = 1.0  # the way of the slider in which the table is gone through upwards
+
+    @property
+    def variant(self) -> tuple[Any, ...]:
+        """What a request under the load goes by."""
+        return (*super().variant, self.inward is None)
 
     @property
     def kept(self) -> tuple[str, ...]:

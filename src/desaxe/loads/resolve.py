@@ -131,7 +131,7 @@ def plan_of(
     known   the definitions that names have
     """
     known = known or register()
-    sorts = tuple((n, type(a), a.centre, a.has_slope, columns_of(a)) for n, a in loads.items())
+    sorts = tuple((name, load.variant) for name, load in loads.items())
     key = tuple(names), sorts, state, mu, known
     found = _PLANS.get(key)
     if found is None:
@@ -205,11 +205,6 @@ def _terms(name: str, force: str, load: Load, state: bool, known: Register) -> t
     if len(through) > 1 or not slope:
         raise ValueError(f"{name}: this derivative is not derived for a load {force} over {load.over}")
     return (Term(slope, force, through[0]),)
-
-
-def columns_of(load: Load) -> tuple[Any, ...]:
-    """The columns of a load over the motion, and whether directions matter: plans differ by these."""
-    return (load.needs, load.has_ways) if isinstance(load, OfMotion) else ()
 
 
 def way_of(given: Mapping[str, Any]) -> Any:

@@ -3,7 +3,7 @@
 import math
 import struct
 from collections.abc import Callable, Mapping, Sequence
-from ctypes import CFUNCTYPE, c_char_p, c_int64
+from ctypes import CFUNCTYPE, addressof, c_char, c_char_p, c_int64
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from ..support.recent import Recent
 from .kernels import KernelKey, kernel_of
 
 MOST_KEPT = 256  # kernels that nobody else keeps
+_bytes_of = c_char.from_buffer
 _CALL = CFUNCTYPE(c_int64, c_char_p, c_char_p, c_char_p, c_char_p)  # lets go of the GIL while it runs
 
 
@@ -63,8 +64,15 @@ class CompiledKernel:
         for table in self.given:
             arrays += [values[f"{table}_x"], values[f"{table}_c"]]
             lengths.append(values[f"{table}_x"].size)
-        addresses = [array.__array_interface__["data"][0] for array in arrays]
-        return self.call(words(addresses), words(lengths), words(steps), self.data(values))
+        return self.call(words(_addresses(arrays)), words(lengths), words(steps), self.data(values))
+
+
+def _addresses(arrays: Sequence[Any]) -> list[int]:
+    """The addresses of arrays by the fastest way; read-only and strided ones take the slow one."""
+    try:
+        return [addressof(_bytes_of(array)) for array in arrays]
+    except (TypeError, ValueError, BufferError):
+        return [array.__array_interface__["data"][0] for array in arrays]
 
 
 def words(numbers: Sequence[int]) -> bytes:

@@ -47,26 +47,56 @@ def key_of(
     columns: Mapping[str, Any],
     axis_of: Mapping[str, int],
     axes: int,
+    keys: dict[Any, KernelKey] | None = None,
 ) -> KernelKey:
-    """The key of a request whose scalars and columns are known."""
-    check_angle(wanted.accuracy, scalars.get("theta", 0.0))
-    far = constants().limit < abs(scalars.get("theta", 0.0))
-    zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0]
-    fixed = (*wanted.fixed, *zeros)
-    axis = tuple(sorted(axis_of.items()))
-    form = wanted.form
-    if wanted.accuracy != "extended" and _pays_to_ask(columns, axis_of):
-        lengths = (columns.get(name, scalars.get(name)) for name in LENGTHS)
-        if plain_form(wanted.names, form, fixed) is not None and all_have_wide_margins(form, *lengths):
-            form = form._replace(wide_margins=True)
-    return KernelKey(wanted.names, form, fixed, axis, axes, wanted.accuracy, far)
+    """The key of a request whose scalars and columns are known; `keys` are those of the request so far."""
+    theta = scalars.get("theta", 0.0)
+    check_angle(wanted.accuracy, theta)
+    zeros = tuple([name for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0])
+    kind = (
+        tuple(axis_of.items()),
+        axes,
+        zeros,
+        constants().limit < abs(theta),
+        _is_wide(wanted, scalars, columns, axis_of),
+    )
+    key = None if keys is None else keys.get(kind)
+    if key is None:
+        key = _new_key(wanted, *kind)
+        if keys is not None:
+            keys[kind] = key
+    return key
 
 
-def _pays_to_ask(columns: Mapping[str, Any], axis_of: Mapping[str, int]) -> bool:
-    """True if there are so few lengths per point that testing the designs in advance pays."""
-    lengths = sum(columns[name].size for name in LENGTHS if name in columns)
-    sizes = {axis: columns[name].size for name, axis in axis_of.items()} if lengths else {}
-    return bool(lengths * ASKED_AHEAD <= prod(sizes.values()))
+def _new_key(
+    wanted: Request,
+    axis_of: tuple[tuple[str, int], ...],
+    axes: int,
+    zeros: tuple[str, ...],
+    far: bool,
+    wide: bool,
+) -> KernelKey:
+    fixed, form = (*wanted.fixed, *((name, 0.0) for name in zeros)), wanted.form
+    if wide and plain_form(wanted.names, form, fixed) is not None:
+        form = form._replace(wide_margins=True)
+    return KernelKey(wanted.names, form, fixed, tuple(sorted(axis_of)), axes, wanted.accuracy, far)
+
+
+def _is_wide(
+    wanted: Request, scalars: Mapping[str, float], columns: Mapping[str, Any], axis_of: Mapping[str, int]
+) -> bool:
+    """True if all designs have wide margins, and they are so few that testing them in advance pays."""
+    lengths = [scalars.get(name) for name in LENGTHS]
+    if wanted.accuracy == "extended":
+        return False
+    if None not in lengths:
+        return bool(of_numbers(wanted.form)(*lengths)[0])
+    several = [columns.get(name, scalars.get(name)) for name in LENGTHS]
+    if any(length is None for length in several):
+        return False
+    count = sum(columns[name].size for name in LENGTHS if name in columns)
+    points = prod({axis: columns[name].size for name, axis in axis_of.items()}.values())
+    return count * ASKED_AHEAD <= points and all_have_wide_margins(wanted.form, *several)
 
 
 def _is_seen(program: Program, angle: str) -> bool:

@@ -64,22 +64,28 @@ def run_in_blocks(
     True if it left points over, which are settled (see `left_over`), or are not safe (see `tells_unsafe`).
     """
     kernel = kernel_for(key)
+    least = LEAST_BLOCK if key.accuracy == "extended" else least_of(len(outs))
+    if outs[0].size < 2 * least:  # too few for a second thread
+        return bool(kernel.run(values, outs)) and _settled(key, values, outs)
     counted: list[int] = []
     outer = {name for name, axis in key.axis_of if axis == 0}
 
     def block(start: int, stop: int) -> None:
         part = {name: v[start:stop] if name in outer else v for name, v in values.items()}
         places = [out[start:stop] for out in outs]
-        if kernel.run(part, places):
-            with IMPORTS:
-                from .left_over import settle
-
+        if kernel.run(part, places) and _settled(key, part, places):
             counted.append(start)
-            settle(key, part, places)
 
-    least = LEAST_BLOCK if key.accuracy == "extended" else least_of(len(outs))
     in_blocks(block, outs[0].shape[0], outs[0].size, threads, least)
     return bool(counted)
+
+
+def _settled(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> bool:
+    with IMPORTS:
+        from .left_over import settle
+
+    settle(key, values, outs)
+    return True
 
 
 def least_of(values: int) -> int:

@@ -14,7 +14,6 @@ import pytest
 import desaxe as dx
 from desaxe.compiler.llvm import machine
 from desaxe.compiler.llvm.nest import Entry, module_text
-from desaxe.evaluation import call_cache
 from desaxe.mechanism.program import Variant
 from desaxe.oracle.families import FAMILIES, points
 from desaxe.runtime import executor
@@ -139,10 +138,8 @@ def test_requests_are_bounded(monkeypatch):
     assert len(executor._KEPT) <= 2
 
 
-def test_remembered_calls_are_bounded(monkeypatch):
-    """By the request itself, not by where it is in memory; what is forgotten frees its machine code."""
-    monkeypatch.setattr(executor, "_KEPT", executor.Recent(1))
-    monkeypatch.setattr(call_cache, "_CALLS", executor.Recent(2))
+def test_forgotten_code_is_freed(monkeypatch):
+    monkeypatch.setattr(executor, "_KEPT", executor.Recent(2))
     inputs = {"theta": np.linspace(0, 6, 50), "ec": 0.01, "AB": 0.1, "BC": 0.3, "omega0": 2.0}
     codes = []
     for name in ("Y", "V_C", "a_C", "phi"):
@@ -150,7 +147,6 @@ def test_remembered_calls_are_bounded(monkeypatch):
             dx.evaluate(name, **inputs)
         codes.append(weakref.ref([*executor._KEPT._values.values()][-1].code))
     gc.collect()
-    assert len(call_cache._CALLS) == 2
     assert [code() is None for code in codes] == [True, True, False, False]
 
 

@@ -1,6 +1,6 @@
-"""Values under loads that vary with the motion, and labelled arrays as loads."""
+"""Inputs without their loads, and labelled arrays as loads."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,40 +12,10 @@ from ...loads.resolve import VARIABLE, split
 from ...loads.tabulated import over_theta
 from ...mechanism.closed import TURN
 from ...mechanism.messages import amount, message_of
-from ...mechanism.names import STATUS
-from ...runtime.point import point_of
-from ...runtime.request import check_common, several, standstill
 from ..arrays import as_array
-from ..values import answer_of, values
-from .request import MOTION, request_of
 
 Array = NDArray[Any]
 GAP = 1.5  # steps: a table that lacks no more of a turn is a whole one
-
-
-def evaluate_loaded(
-    names: str | Sequence[str],
-    given: Mapping[str, Any],
-    branch: int,
-    accuracy: str | float = "standard",
-    threads: int | None = None,
-    out: Any = None,
-) -> Any:
-    """`evaluate` where F_X or F_Y may vary with the motion; derivatives are total ones."""
-    wanted = (names,) if isinstance(names, str) else several(names)
-    check_common(given, branch, threads)
-    numbers, loads = split({name: value for name, value in given.items() if value is not None})
-    asked, inputs, own = request_of(wanted, numbers, loads, branch, accuracy)
-    if own is None:
-        return values(names, {**dict.fromkeys(MOTION), **numbers}, branch, accuracy, threads, out)
-    if STATUS in wanted and "omega0" not in numbers and "omega" not in numbers:
-        speed = standstill(wanted, {**numbers, **dict.fromkeys(own.loads, 0.0)})
-        if speed is not None:
-            return evaluate_loaded(names, {**given, "omega0": speed}, branch, accuracy, threads, out)
-    point = point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
-    answer = answer_of(asked, point, inputs, numbers, threads, out, own)
-    found = dict(zip(wanted, answer, strict=True)) if type(answer) is tuple else answer
-    return found[names] if isinstance(names, str) else found
 
 
 def loads_of(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Load]]:

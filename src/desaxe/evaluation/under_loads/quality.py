@@ -21,8 +21,7 @@ from ...mechanism.names import LENGTHS, sensitivity
 from ...runtime.request import several
 from ..arrays import numeric
 from ..quality import ROUNDED_ONCE, Quality, conditions_of, digits_of, evaluate_quality
-from ..values import values
-from .loaded import evaluate_loaded
+from ..values import evaluate_loaded, values
 from .request import MOTION, plan_for
 
 Array = NDArray[Any]

@@ -12,10 +12,10 @@ from ...loads.along_motion import SPEEDS, OfMotion
 from ...loads.function import naming
 from ...loads.lines import line_of, totals_of
 from ...loads.load import Load, OverTheta, OverY, TableOverTheta, ahead
-from ...loads.resolve import LoadPlan, columns_of, plan_of, split, way_of
+from ...loads.resolve import LoadPlan, plan_of, split, way_of
 from ...mechanism.load_lines import LoadLines, TurningSense, Under
 from ...mechanism.names import LENGTHS, STATUS
-from ...mechanism.own import register
+from ...mechanism.own import Register, register
 from ...runtime.point import point_of
 from ...runtime.request import Request, accuracy_of, is_steady, request
 from ...support.forks import IMPORTS
@@ -98,12 +98,20 @@ class LoadedRequest(NamedTuple):
 
 
 def request_of(
-    names: Sequence[str], numbers: Mapping[str, Any], loads: Mapping[str, Load], branch: int, accuracy: Any
+    names: Sequence[str],
+    numbers: Mapping[str, Any],
+    loads: Mapping[str, Load],
+    branch: int,
+    accuracy: Any,
+    known: Register | None = None,
 ) -> LoadedRequest:
-    """The request of names from inputs that are present, and from loads; TypeError without an angle."""
-    plan = plan_at(names, loads, {name for name, value in numbers.items() if value is not None})
-    if not plan.loads:
-        asked = request(names, numbers, branch, accuracy)
+    """The request of names from inputs that are present, and from loads; TypeError without an angle.
+
+    known   the definitions that names have; those of this process at this moment without
+    """
+    plan = plan_at(names, loads, {n for n, value in numbers.items() if value is not None}) if loads else None
+    if plan is None or not plan.loads:
+        asked = request(names, numbers, branch, accuracy, known)
         return LoadedRequest(asked, asked.inputs, None)
     if numbers.get("theta") is None:
         varying = " and ".join(plan.loads)
@@ -131,7 +139,7 @@ def under_loads(plan: LoadPlan, given: Mapping[str, Any], branch: int, accuracy:
     """The request of a plan's totals."""
     lines = tuple(_lines(name, load) for name, load in plan.loads.items())
     present = tuple(name for name, value in given.items() if value is not None)
-    sort = tuple(columns_of(load) for load in plan.loads.values())
+    sort = tuple(load.variant for load in plan.loads.values())
     steady, accuracy = is_steady(given.get("alpha")), accuracy_of(accuracy)
     key = plan.shown, lines, sort, present, steady, branch, accuracy, register()
     known = _KNOWN.get(key)
