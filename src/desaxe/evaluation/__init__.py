@@ -13,7 +13,6 @@ quality        condition numbers and error bounds
 values         values of names from a dict of inputs: the body of `evaluate`
 function       a prepared callable of some inputs
 labelled       `evaluate` of labelled arrays
-dask_blocks    a function of many outputs over the chunks of Dask arrays
 in_units       labelled results in other units
 reductions     reductions of a grid along some of its axes: the largest, the mean, the values at one place
 under_loads    values under loads that vary with the motion

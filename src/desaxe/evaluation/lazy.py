@@ -1,5 +1,6 @@
-"""`grid(..., chunks=)`: the variables of a plan as lazy Dask arrays, one task a chunk and step."""
+"""`grid(..., chunks=)`: the variables of a plan as lazy Dask arrays, one task for each chunk and step."""
 
+import warnings
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -7,7 +8,6 @@ from numpy.typing import NDArray
 
 from ..support.extras import needed
 from .chunks import chunk_lengths
-from .dask_blocks import outputs_of_blocks
 from .plan import Plan, Step, computed
 
 Array = NDArray[Any]
@@ -27,33 +27,41 @@ def lazy_values(plan: Plan, chunks: Any, threads: int | None) -> dict[str, Any]:
     lengths = chunk_lengths(chunks, plan.sizes, max(1, AUTO // max(plan.behind, 1)))
     axes, found = plan.outer.axes, dict[str, Any]()
     for step in plan.all:
-        task = StepTask(step, threads or 1)
-        token = tokenize(task.identity, *(axes[name] for name in step.axes), lengths)
+        token = tokenize(step.identity, *(axes[name] for name in step.axes), lengths)
         columns = []
         for number, name in enumerate(step.axes):
             own = lengths.get(name, (axes[name].size,))  # a reduced axis is whole
             column = da.from_array(axes[name], chunks=(own,), name=f"{name}-{token}", inline_array=True)
-            columns.append((column, (number,)))
-        found |= outputs_of_blocks(task, columns, tuple(range(len(step.dims))), token)
+            columns += [column, (number,)]
+        along = tuple(range(len(step.dims)))
+        empty = np.empty((0,) * len(along), object)
+        with warnings.catch_warnings():
+            # An outer product has more chunks than each of its arguments, of which Dask would warn.
+            warnings.simplefilter("ignore", da.PerformanceWarning)
+            blocks = da.blockwise(
+                ChunkTask(step, threads or 1), along, *columns, dtype=object, concatenate=True,
+                name=f"desaxe-{token}", meta=empty,
+            )  # fmt: skip
+        for name, output in step.outputs.items():
+            found[name] = da.blockwise(
+                _output, along, blocks, along, name, None, dtype=output.dtype, name=f"{name}-{token}",
+                meta=empty.astype(output.dtype),
+            )  # fmt: skip
     return found
 
 
-class StepTask(NamedTuple):
-    """A step in a chunk, from the values of its axes."""
+class ChunkTask(NamedTuple):
+    """A step in a chunk, from the values of its axes; it pickles."""
 
     step: Step
     threads: int
 
-    @property
-    def identity(self) -> str:
-        """A text that tells the task from all others."""
-        return self.step.identity
-
-    @property
-    def dtypes(self) -> dict[str, np.dtype[Any]]:
+    def __call__(self, *values: Array) -> dict[str, Array]:
         """The outputs by name."""
-        return {name: output.dtype for name, output in self.step.outputs.items()}
-
-    def compute(self, *values: Array) -> dict[str, Array]:
-        """The outputs of a block."""
         return computed(self.step, dict(zip(self.step.axes, values, strict=True)), self.threads)
+
+
+def _output(block: Any, name: str) -> Array:
+    """One output of a computed block."""
+    array: Array = block[name]
+    return array
