@@ -12,16 +12,14 @@ from numpy.typing import NDArray
 
 from ..loads.resolve import without_loads
 from ..mechanism.catalogue import has, inputs_of, law_name, quantity
-from ..mechanism.constants import limit_of
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs
-from ..mechanism.names import LENGTHS, sensitivity
+from ..mechanism.names import sensitivity
 from ..mechanism.own import Definition, Register, register, register_with, used_by
 from ..mechanism.read import in_si
-from ..runtime.kernels import STRUCTURAL_ZEROS, KernelKey, all_have_wide_margins
+from ..runtime.kernels import key_of
 from ..runtime.native_calls import Bound, bind, point_caller, repair_for, scalar_of, ufunc_of
 from ..runtime.request import Request, as_number, check_common, request, several, standstill
-from ..runtime.specialise import plain_form
 from ..support.computed import computed_once
 from ..support.forks import IMPORTS
 from ..support.interrupts import import_whole
@@ -301,7 +299,7 @@ def _compiled(
     check_common(given, branch)
     wanted = request(names, given, branch, accuracy, known)
     numbers = {n: _fixed_number(n, given, wanted) for n in wanted.inputs if n not in inputs}
-    key = _key(wanted, numbers, inputs)
+    key = key_of(wanted, numbers, {}, {name: 0 for name in inputs if name in wanted.inputs}, 1)
     repair = repair_for(key, numbers, inputs, failures)
     kinds = tuple(name == "status" for name in names)
     return bind(key, numbers, inputs, repair), kinds
@@ -312,21 +310,3 @@ def _fixed_number(name: str, given: Mapping[str, Any], wanted: Request) -> float
     if number is None:
         raise TypeError(f"function: {name} is fixed, so it is a number; an array belongs to inputs=")
     return number
-
-
-def _key(wanted: Request, numbers: Mapping[str, float], inputs: Sequence[str]) -> KernelKey:
-    """The key of the kernel in which every input varies."""
-    zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if numbers.get(name) == 0.0]
-    fixed = (*wanted.fixed, *zeros)
-    form = wanted.form
-    lengths = [numbers[name] for name in LENGTHS if name in numbers]
-    if (
-        len(lengths) == len(LENGTHS)
-        and wanted.accuracy != "extended"
-        and all_have_wide_margins(form, *lengths)
-    ):
-        two_forms = plain_form(wanted.names, form, fixed) is not None
-        form = form._replace(wide_margins=two_forms)
-    axis = tuple(sorted((name, 0) for name in inputs if name in wanted.inputs))
-    far = abs(numbers.get("theta", 0.0)) > limit_of(wanted.accuracy)
-    return KernelKey(wanted.names, form, fixed, axis, 1, wanted.accuracy, far)

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from ..support.extras import needed
 from .chunks import chunk_lengths
-from .plan import Plan, Step, computed
+from .plan import Plan, computed
+from .step import Step
 
 Array = NDArray[Any]
 AUTO = 2**21  # points of a chunk: 16 MiB of doubles

@@ -14,69 +14,26 @@ arrays and travels.
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import prod
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.names import LENGTHS
-from ..mechanism.own import Definition
 from ..support.extras import needed
 from .axes import Outer
 from .chunks import Slices, blocks_of, chunk_lengths, longest, pieces, slices_of
-from .labels import Output, labelled, provenance, with_loads
+from .labels import labelled, provenance, with_loads
 from .points import Points, points_of
 from .reductions.argument import Reductions
 from .reductions.reduced import Reduced, reduced_of
+from .step import Step
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[Any]
 POINTS = 2**22  # of a grid that are in memory at once to be reduced, where what is left of it allows that
-
-
-class Step(Protocol):
-    """A part of a plan: some variables over the same dimensions."""
-
-    @property
-    def dims(self) -> tuple[str, ...]:
-        """The dimensions of the outputs, in their order."""
-
-    @property
-    def axes(self) -> tuple[str, ...]:
-        """The dimensions whose values the step needs; those that are reduced are whole in every block."""
-
-    @property
-    def own(self) -> tuple[Definition, ...]:
-        """The definitions that it needs."""
-
-    @property
-    def outputs(self) -> dict[str, Output]:
-        """The outputs by name: their types and CF attributes."""
-
-    @property
-    def identity(self) -> str:
-        """A text that tells the step from all others."""
-
-    def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
-        """The outputs of a block by name, from the values along each of its `axes`."""
-
-
-@runtime_checkable
-class Reducing(Protocol):
-    """A step that takes something of whole axes: which it holds in memory, and how their pieces combine."""
-
-    def held(self) -> tuple[str, ...]:
-        """The reduced axes whose points are in memory behind each number of the outputs."""
-
-    def combines(self) -> bool:
-        """True if the outputs follow from those of pieces of these axes."""
-
-    def combine(
-        self, parts: Sequence[Mapping[str, Array]], found: Sequence[dict[str, Array]]
-    ) -> dict[str, Array]:
-        """The outputs of a block from those of its pieces, in their order, and the values of these."""
 
 
 class Part(NamedTuple):
@@ -199,7 +156,7 @@ class Plan(NamedTuple):
 
     def _in_memory(self) -> dict[str, int]:
         """The lengths of blocks that fit into memory before they are reduced; the whole without that."""
-        if not any(isinstance(step, Reducing) and step.held() for step in self.steps):
+        if not any(step.held() for step in self.steps):
             return {name: max(1, size) for name, size in self.sizes.items()}
         return longest(chunk_lengths("auto", self.sizes, max(1, POINTS // max(self.behind, 1))))
 
@@ -258,8 +215,6 @@ def margin_of(outer: Outer, branch: int, accuracy: Any, dims: Sequence[str]) -> 
 
 def computed(step: Step, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
     """The outputs of a step in a block; axes that it holds in memory are cut where that changes nothing."""
-    if not isinstance(step, Reducing):
-        return step.compute(values, threads)
     parts = [*pieces(values, step.held() if step.combines() else ())]
     found = [step.compute(part, threads) for part in parts]
     return found[0] if len(found) == 1 else step.combine(parts, found)

@@ -6,7 +6,8 @@ point: cutting a grid changes no digit.
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,16 +18,17 @@ from ..runtime.request import Request
 from .arrays import Loops, copied_back, dtype_of, evaluate_arrays, fill, outputs_for, scratch_for
 from .axes import Outer, require_inputs
 from .labels import Output, attributes
+from .step import Step
 from .under_loads.request import LoadInputs, request_of
 from .values import evaluate_loaded
 
 Array = NDArray[Any]
 
 
-class Points(NamedTuple):
+@dataclass(frozen=True)
+class Points(Step):
     """The values of names over some dimensions; without arrays, so that it pickles small.
 
-    dims     the dimensions of the outputs, in their order
     wanted   the request
     inputs   those that are numbers here, or dimensions
     numbers  the inputs that are numbers here
@@ -35,7 +37,6 @@ class Points(NamedTuple):
     loads    the inputs that follow from loads which vary with the motion; derivatives are total ones then
     """
 
-    dims: tuple[str, ...]
     wanted: Request
     inputs: tuple[str, ...]
     numbers: tuple[tuple[str, float], ...]
@@ -47,11 +48,6 @@ class Points(NamedTuple):
     def names(self) -> tuple[str, ...]:
         """The names, as the user says them."""
         return self.wanted.shown
-
-    @property
-    def axes(self) -> tuple[str, ...]:
-        """The dimensions whose values the step needs."""
-        return self.dims
 
     @property
     def own(self) -> tuple[Definition, ...]:

@@ -1,6 +1,7 @@
 """Peaks of the designs of a sweep, beside its grid: refined over the crank angle, with their gradients."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..evaluation.axes import Outer
 from ..evaluation.labels import Output, attributes, side_attributes
+from ..evaluation.step import Step
 from ..loads.angles import cycle
 from ..mechanism.names import sensitivity
 from ..mechanism.own import Definition
@@ -29,25 +31,20 @@ class PeakRequest(NamedTuple):
     theta: tuple[float, float]
 
 
-class PeakStep(NamedTuple):
+@dataclass(frozen=True)
+class PeakStep(Step):
     """The peak of a quantity over some of the dimensions of a sweep: a step of its plan.
 
     Its variables are `peak_absmax_a_C`, `peak_absmax_a_C_theta`, ..., `peak_absmax_a_C_wrt_ec`.
     """
 
     block: PeakBlock
-    dims: tuple[str, ...]
     state: bool
 
     @property
     def quantity(self) -> str:
         """The quantity whose peak it is."""
         return self.block.sought.plan.name
-
-    @property
-    def axes(self) -> tuple[str, ...]:
-        """The dimensions whose values the step needs."""
-        return self.dims
 
     @property
     def own(self) -> tuple[Definition, ...]:
@@ -149,4 +146,4 @@ def _peak_step(one: PeakRequest, outer: Outer, branch: int, accuracy: Any) -> Pe
             raise TypeError(f"peak of {one.name}: {name} is missing (needed: {', '.join(plan.needs)})")
     dims = tuple(name for name in outer.dimensions if name in needs)
     scalars = {name: float(outer.axes[name].reshape(-1)[0]) for name in needs if name not in dims}
-    return PeakStep(peak_block(sought, scalars, dims), dims, outer.given.get("omega") is not None)
+    return PeakStep(dims, peak_block(sought, scalars, dims), outer.given.get("omega") is not None)

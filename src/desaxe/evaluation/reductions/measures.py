@@ -4,15 +4,16 @@ Each is a step of a plan over the axes that are left; no point of the reduced ax
 """
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...mechanism.catalogue import quantity
-from ...mechanism.own import Definition
 from ..labels import Output, attributes
 from ..points import Points
+from ..step import Step
 from .argument import At
 from .own_measure import OwnMeasure
 
@@ -20,23 +21,13 @@ Array = NDArray[Any]
 FLOAT = np.dtype(np.float64)
 
 
-class AtPlace(NamedTuple):
+@dataclass(frozen=True)
+class AtPlace(Step):
     """The values of a name at one place of an axis."""
 
-    dims: tuple[str, ...]
     axis: str
     at: At
     of: Points
-
-    @property
-    def axes(self) -> tuple[str, ...]:
-        """The dimensions whose values the step needs."""
-        return self.dims
-
-    @property
-    def own(self) -> tuple[Definition, ...]:
-        """None: the request of a store tells those of measures."""
-        return ()
 
     @property
     def identity(self) -> str:
@@ -58,28 +49,13 @@ class AtPlace(NamedTuple):
         return {self.at.variable: self.of.compute(columns, threads)[self.at.name][..., 0]}
 
 
-class OfDesign(NamedTuple):
+@dataclass(frozen=True)
+class OfDesign(Step):
     """A user's function of the design, with its derivatives by some parameters."""
 
-    dims: tuple[str, ...]
     function: OwnMeasure
     numbers: tuple[tuple[str, float], ...]
     slopes: tuple[str, ...]
-
-    @property
-    def axes(self) -> tuple[str, ...]:
-        """The dimensions whose values the step needs."""
-        return self.dims
-
-    @property
-    def own(self) -> tuple[Definition, ...]:
-        """None: the request of a store tells those of measures."""
-        return ()
-
-    @property
-    def identity(self) -> str:
-        """A text that tells the step from all others."""
-        return repr(self)
 
     @property
     def outputs(self) -> dict[str, Output]:

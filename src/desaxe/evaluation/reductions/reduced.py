@@ -8,8 +8,9 @@ of others (std, percentiles, one kind after another) axes are whole.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from math import prod
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from ..axes import Outer
 from ..chunks import blocks_of, chunk_lengths, longest, slices_of
 from ..labels import Output, attributes, input_attributes, side_attributes
 from ..points import Points, points_of
+from ..step import Step
 from ..under_loads.sides import sides_of
 from .argument import Chain, Reductions, chain_name, extremes_at_end
 from .in_memory import Field, combined, field_of, folded
@@ -32,18 +34,17 @@ BLOCK = 2**16  # points whose values stay in the second-level cache
 BLOCKS = 64  # of a part: an interrupt is heard after it
 
 
-class Reduced(NamedTuple):
+@dataclass(frozen=True)
+class Reduced(Step):
     """Kinds of names over the axes that are left.
 
     names       those of which a kind is taken
-    dims        the axes that are left
     reductions  what is taken
     of          the values of `names`
     along       the last of its axes, if it is reduced first, block by block
     """
 
     names: tuple[str, ...]
-    dims: tuple[str, ...]
     reductions: Reductions
     of: Points
     along: str | None
@@ -201,16 +202,14 @@ class Reduced(NamedTuple):
         return sides_of(name, self.of, flat).reshape(shape)
 
 
-def reduced_of(
-    outer: Outer, branch: int, accuracy: Any, reductions: Reductions
-) -> tuple[Reduced | AtPlace | OfDesign, ...]:
+def reduced_of(outer: Outer, branch: int, accuracy: Any, reductions: Reductions) -> tuple[Step, ...]:
     """The steps of what is taken of a grid, checked: the kinds of all names, then each measure."""
     dims = tuple(name for name in outer.dimensions if name not in reductions.axes)
     names = tuple(name for name in outer.names if reductions.chains(name))
-    steps: list[Reduced | AtPlace | OfDesign] = []
+    steps: list[Step] = []
     if names:
         of, along = _values_of(names, dims, outer, branch, accuracy, reductions)
-        steps.append(Reduced(names, dims, reductions, of, along))
+        steps.append(Reduced(dims, names, reductions, of, along))
     for one in reductions.at:
         axis = reductions.axes[0]
         there = outer._replace(axes={**outer.axes, axis: np.array([one.place])})
