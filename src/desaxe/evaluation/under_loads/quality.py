@@ -77,7 +77,7 @@ def _force_and_error(
     theta = np.asarray(numeric("theta", numbers["theta"], ("quality",)))
     if isinstance(load, TableOverTheta):
         room = 4.0 * ROUNDED_ONCE * (np.abs(theta) + load.period)
-        here, *beside = (load.both(theta + side * room)[0] for side in (0.0, -1.0, 1.0))
+        here, *beside = (load.both(at)[0] for at in (theta, theta - room, theta + room))
         return here[()], _largest(here, beside) + ROUNDINGS * ROUNDED_ONCE * _size(load.table)
     assert isinstance(load, OverY)
     given = {**dict.fromkeys(MOTION), **{n: numbers[n] for n in LENGTHS}, "theta": theta}
@@ -87,10 +87,12 @@ def _force_and_error(
     speeds = {n: numeric(n, numbers[n], ("quality",)) for n in ("omega0", "omega", "alpha") if n in numbers}
     x = np.asarray(load.along(motion))
     room = sum(np.asarray(one.error_bound) for one in places.values()) + 2.0 * ROUNDED_ONCE * np.abs(x)
-    piece = load.piece(x, ahead(motion, way_of(speeds)))
-    here, *beside = (load.held(x + side * room, piece)[0] for side in (0.0, -1.0, 1.0))
-    if not load.jumping:  # the piece is that of the exact position, which may be the next one
-        beside = [load.both(x + side * room, ahead(motion, way_of(speeds)))[0] for side in (-1.0, 1.0)]
+    way = ahead(motion, way_of(speeds))
+    piece = load.piece(x, way)
+    here = load.held(x, piece)[0]
+    # Where it jumps nowhere the piece is that of the exact position, which may be the next one.
+    held = (lambda at: load.held(at, piece)[0]) if load.jumping else (lambda at: load.both(at, way)[0])
+    beside = [held(x + side * room) for side in (-1.0, 1.0)]
     ways = [load.outward] if load.inward is None else [load.outward, load.inward]
     error = _largest(here, beside) + ROUNDINGS * ROUNDED_ONCE * max(map(_size, ways))
     return np.nan_to_num(here)[()], error

@@ -168,7 +168,8 @@ def _new_request(
         )
     more = () if motion is None else motion.inputs
     made = by | {f"{load}{end}" for load in plan.loads for end in ("", "_first", "_period")}
-    inputs = tuple(name for name in dict.fromkeys((*asked.inputs, "theta", *more)) if name not in made)
+    taken = {*asked.inputs, "theta", *more} - made
+    inputs = tuple(name for name in dict.fromkeys((*given, *asked.inputs, *more)) if name in taken)
     return asked, inputs, tuple(name for name in asked.inputs if name in by or name in plan.loads), motion
 
 
