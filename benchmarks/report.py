@@ -1,6 +1,7 @@
 """The results of a run as the page docs/benchmarks.md and the table of docs/measured.md; times are ratios."""
 
 from collections.abc import Mapping
+from math import nan
 from typing import Any
 
 from .accuracy.errors import TOP, ULPS
@@ -256,8 +257,16 @@ def _megabytes(found: Mapping[str, Any]) -> str:
 
 def _calls(data: Data) -> str:
     """Seconds of desaxe's calls in new processes."""
-    rows = [[name, f"{t['first']:.2f}", f"{t['second']:.3f}"] for name, t in data["calls"].items()]
-    head = ["seconds of processor time, over importing NumPy", "first call", "second process"]
+    rows = [
+        [name, f"{t['first']:.2f}", f"{t.get('later', nan):.4f}", f"{t['second']:.3f}"]
+        for name, t in data["calls"].items()
+    ]
+    head = [
+        "seconds of processor time, over importing NumPy",
+        "first call",
+        "slowest later",
+        "second process",
+    ]
     return (
         f"{table(head, rows)}\n\n"
         "A first call finds no cache of any kind: it is answered by NumPy, or compiles. A second process\n"
