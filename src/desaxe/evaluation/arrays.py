@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from math import prod
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,9 @@ from ..runtime.request import Request, as_number
 from ..runtime.threads import run_in_blocks
 from ..support.memory import require
 from ..support.shown import shown
-from .under_loads.request import LoadInputs
+
+if TYPE_CHECKING:
+    from .under_loads.request import LoadInputs
 
 Array = NDArray[Any]
 
@@ -51,7 +53,7 @@ def evaluate_arrays(
     given: Mapping[str, Any],
     threads: int | None,
     out: Any,
-    loads: LoadInputs | None = None,
+    loads: "LoadInputs | None" = None,
     keys: dict[Any, KernelKey] | None = None,
 ) -> dict[str, Array]:
     """The values by requested name, in the broadcast shape.

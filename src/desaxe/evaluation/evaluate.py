@@ -1,6 +1,7 @@
 """`evaluate`: numbers in, a float out; arrays in, arrays out."""
 
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any
 
 from ..mechanism.inputs import INPUTS
@@ -8,7 +9,7 @@ from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LOADS
 from ..support.answer import Answer
 from ..support.forks import IMPORTS
-from .values import evaluate_loaded, values
+from .values import values
 
 STEADY = 0.0  # the default of alpha; an alpha of 0 in a call is another object
 
@@ -97,7 +98,7 @@ def evaluate(
         loads = (m_crank, m_rod, m_slider, I_crank, I_rod, r_crank, r_rod, F_X, F_Y, g_X, g_Y, mu)
         given.update((name, load) for name, load in zip(LOADS, loads, strict=True) if load is not None)
         if sliders is None and any(map(callable, loads)):
-            values_of = evaluate_loaded
+            values_of = _values_under_loads()
             if quality:
                 with IMPORTS:
                     from .under_loads.quality import evaluate_loaded_quality
@@ -117,6 +118,15 @@ def evaluate(
         found = Values(found)
         found.inputs = {n: value for n, value in given.items() if value is not None and value is not STEADY}
     return found
+
+
+@cache
+def _values_under_loads() -> Callable[..., Any]:
+    """`evaluate_loaded`, imported when the first load comes."""
+    with IMPORTS:
+        from .under_loads.loaded import evaluate_loaded
+
+    return evaluate_loaded
 
 
 def _units(found: Any) -> Any:

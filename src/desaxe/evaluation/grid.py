@@ -15,7 +15,7 @@ from .labelled import grid_by_index, has_named_index
 from .plan import plan_of
 from .points import points_of
 from .reductions.argument import names_reduced, reductions_of
-from .values import evaluate_loaded
+from .under_loads.loaded import evaluate_loaded
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -19,8 +19,8 @@ from .arrays import Loops, copied_back, dtype_of, evaluate_arrays, fill, outputs
 from .axes import Outer, require_inputs
 from .labels import Output, attributes
 from .step import Step
+from .under_loads.loaded import evaluate_loaded
 from .under_loads.request import LoadInputs, request_of
-from .values import evaluate_loaded
 
 Array = NDArray[Any]
 

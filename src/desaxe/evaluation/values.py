@@ -6,19 +6,28 @@ A single point stays in this file and needs only `math`; as soon as an input is 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..loads.load import Load
-from ..loads.resolve import split
 from ..mechanism.inputs import SAFE, is_good
 from ..mechanism.own import Register, register
 from ..runtime.point import point_of
-from ..runtime.request import accuracy_of, as_number, check_common, is_steady, several, standstill
+from ..runtime.request import (
+    accuracy_of,
+    as_number,
+    check_common,
+    is_steady,
+    request,
+    several,
+    standstill,
+)
 from ..support.forks import IMPORTS
 from ..support.interrupts import import_whole
-from .under_loads.request import LoadInputs, request_of
 
-NO_LOADS: Mapping[str, Load] = MappingProxyType({})
+if TYPE_CHECKING:
+    from ..loads.load import Load
+    from .under_loads.request import LoadInputs
+
+NO_LOADS: "Mapping[str, Load]" = MappingProxyType({})
 LEAST, MOST = SAFE
 MOST_KNOWN = 1024  # requests that are remembered
 
@@ -30,7 +39,7 @@ def values(
     accuracy: Any = "standard",
     threads: int | None = None,
     out: Any = None,
-    loads: Mapping[str, Load] = NO_LOADS,
+    loads: "Mapping[str, Load]" = NO_LOADS,
 ) -> Any:
     """The value of one name, or a dict name -> value; see `evaluate`. Inputs that are None are not given.
 
@@ -59,24 +68,11 @@ def values(
     return answer[names] if isinstance(names, str) else answer
 
 
-def evaluate_loaded(
-    names: str | Sequence[str],
-    given: Mapping[str, Any],
-    branch: int,
-    accuracy: str | float = "standard",
-    threads: int | None = None,
-    out: Any = None,
-) -> Any:
-    """`values` where F_X or F_Y may vary with the motion."""
-    numbers, loads = split({name: value for name, value in given.items() if value is not None})
-    return values(names, numbers, branch, accuracy, threads, out, loads)
-
-
 class CheckedRequest:
     """A request that is checked and remembered, with its function of a point.
 
     inputs   those that are numbers or arrays of the caller
-    forces   the loads that matter
+    loaded   those that follow from the loads that matter
     speed    omega0 where it is not given and has no effect
     keys     the kernels of arrays so far, by what they go by
     """
@@ -85,7 +81,7 @@ class CheckedRequest:
         self,
         names: tuple[str, ...],
         given: Mapping[str, Any],
-        loads: Mapping[str, Load],
+        loads: "Mapping[str, Load]",
         branch: int,
         accuracy: str,
         known: Register,
@@ -94,17 +90,21 @@ class CheckedRequest:
         if "status" in names and given.get("omega0") is None and given.get("omega") is None:
             self.speed = standstill(names, {**given, **dict.fromkeys(loads, 0.0)}, known)
             given = {**given, "omega0": self.speed}
-        self.asked, self.inputs, own = request_of(names, given, loads, branch, accuracy, known)
-        self.forces = None if own is None else tuple(own.loads)
-        self.functions = () if own is None else own.functions
-        asked = self.asked
-        self.point = point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
-        if own is None:
+        self.loaded: LoadInputs | None = None
+        if loads:
+            with IMPORTS:
+                from .under_loads.request import request_of
+
+            asked, self.inputs, self.loaded = request_of(names, given, loads, branch, accuracy, known)
+        else:
+            asked = request(names, given, branch, accuracy, known)
+        self.asked, self.point = asked, point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
+        if self.loaded is None:
             self.inputs = self.point.inputs
         self.keys: dict[Any, Any] = {}
 
     def answer(
-        self, given: Mapping[str, Any], threads: int | None, out: Any, loads: Mapping[str, Load]
+        self, given: Mapping[str, Any], threads: int | None, out: Any, loads: "Mapping[str, Load]"
     ) -> Any:
         """The values: a tuple at a point, a dict by name over arrays."""
         numbers = []
@@ -125,11 +125,10 @@ class CheckedRequest:
             return self.point.function(*numbers)
         return self.point.run(own.at_point(dict(zip(self.inputs, numbers, strict=True))))
 
-    def of_loads(self, loads: Mapping[str, Load]) -> LoadInputs | None:
-        """The inputs that follow from loads."""
-        if self.forces is None:
-            return None
-        return LoadInputs({name: loads[name] for name in self.forces}, self.functions)
+    def of_loads(self, loads: "Mapping[str, Load]") -> "LoadInputs | None":
+        """The inputs that follow from these loads, of the kind of those that were checked."""
+        known = self.loaded
+        return None if known is None else known._replace(loads={name: loads[name] for name in known.loads})
 
 
 _KNOWN: dict[Any, CheckedRequest] = {}
@@ -147,7 +146,7 @@ def _evaluate_arrays() -> Callable[..., dict[str, Any]]:
 
 
 def _of_arrays(
-    call: CheckedRequest, given: Mapping[str, Any], threads: int | None, out: Any, loads: LoadInputs | None
+    call: CheckedRequest, given: Mapping[str, Any], threads: int | None, out: Any, loads: "LoadInputs | None"
 ) -> dict[str, Any]:
     """The values for arrays: labelled ones broadcast by their dimensions, others by position."""
     evaluate_arrays = _evaluate_arrays()

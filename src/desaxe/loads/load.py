@@ -55,7 +55,7 @@ class Load(ABC):
 
     @property
     def variant(self) -> tuple[Any, ...]:
-        """What a request under the load goes by: not its content, which is an argument of kernels."""
+        """The key of the load in a request: its kind, not its content, which is an argument of kernels."""
         return type(self), self.centre, self.has_slope
 
     @property
@@ -231,7 +231,7 @@ class OverY(Load):
 
     @property
     def variant(self) -> tuple[Any, ...]:
-        """What a request under the load goes by."""
+        """The key of the load in a request."""
         return (*super().variant, self.inward is None)
 
     @property

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.values import evaluate_loaded
+from ..evaluation.under_loads.loaded import evaluate_loaded
 from ..loads.load import Load
 from ..mechanism.closed import TURN
 from ..mechanism.closed.angles import dead_centres, limit_angles, repeated

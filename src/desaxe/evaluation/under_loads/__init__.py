@@ -1,7 +1,7 @@
 """Values under loads that vary with the motion.
 
 request  names under loads as one request, whose arguments are tables
-loaded   inputs without their loads, and labelled arrays as loads
+loaded   values under loads, and labelled arrays as loads
 quality  condition numbers and error bounds under loads that are tables
 arcs     arcs of crank angles on which one piece of a load holds
 sides    on which side of a jump of a load samples are

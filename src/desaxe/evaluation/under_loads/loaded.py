@@ -1,6 +1,6 @@
-"""Inputs without their loads, and labelled arrays as loads."""
+"""Values under loads that vary with the motion, and labelled arrays as loads."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,9 +13,23 @@ from ...loads.tabulated import over_theta
 from ...mechanism.closed import TURN
 from ...mechanism.messages import amount, message_of
 from ..arrays import as_array
+from ..values import values
 
 Array = NDArray[Any]
 GAP = 1.5  # steps: a table that lacks no more of a turn is a whole one
+
+
+def evaluate_loaded(
+    names: str | Sequence[str],
+    given: Mapping[str, Any],
+    branch: int,
+    accuracy: str | float = "standard",
+    threads: int | None = None,
+    out: Any = None,
+) -> Any:
+    """`values` where F_X or F_Y may vary with the motion."""
+    numbers, loads = split({name: value for name, value in given.items() if value is not None})
+    return values(names, numbers, branch, accuracy, threads, out, loads)
 
 
 def loads_of(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Load]]:

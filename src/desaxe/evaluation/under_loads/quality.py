@@ -21,7 +21,8 @@ from ...mechanism.names import LENGTHS, sensitivity
 from ...runtime.request import several
 from ..arrays import numeric
 from ..quality import ROUNDED_ONCE, Quality, conditions_of, digits_of, evaluate_quality
-from ..values import evaluate_loaded, values
+from ..values import values
+from .loaded import evaluate_loaded
 from .request import MOTION, plan_for
 
 Array = NDArray[Any]
@@ -90,9 +91,9 @@ def _force_and_error(
     way = ahead(motion, way_of(speeds))
     piece = load.piece(x, way)
     here = load.held(x, piece)[0]
+    ends = [np.asarray(x + side * room) for side in (-1.0, 1.0)]
     # Where it jumps nowhere the piece is that of the exact position, which may be the next one.
-    held = (lambda at: load.held(at, piece)[0]) if load.jumping else (lambda at: load.both(at, way)[0])
-    beside = [held(x + side * room) for side in (-1.0, 1.0)]
+    beside = [(load.held(end, piece) if load.jumping else load.both(end, way))[0] for end in ends]
     ways = [load.outward] if load.inward is None else [load.outward, load.inward]
     error = _largest(here, beside) + ROUNDINGS * ROUNDED_ONCE * max(map(_size, ways))
     return np.nan_to_num(here)[()], error
