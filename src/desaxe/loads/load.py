@@ -256,10 +256,6 @@ class OverY(Load):
         """The position or distance that the table is over, from the motion."""
         return motion["Y"]
 
-    def moved(self, parameter: str, motion: Mapping[str, Any]) -> Any:
-        """The derivative of that by a parameter."""
-        return motion[f"Y_wrt_{parameter}"]
-
     def __call__(self, Y: Any, way: Any = 1.0) -> Any:
         """The load at positions of a slider that goes outward, or inward where `way` is negative.
 

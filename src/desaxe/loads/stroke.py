@@ -2,11 +2,9 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from math import nan
 from typing import Any
 
 from ..mechanism.names import LENGTHS
-from ..support.forks import IMPORTS
 from .load import POSITION, OverY
 
 DEAD_CENTRES = ("outer", "inner")
@@ -45,25 +43,5 @@ class OverStroke(OverY):
         """The distance from the dead centre."""
         return abs(motion[self.centre] - motion["Y"])
 
-    def moved(self, parameter: str, motion: Mapping[str, Any]) -> Any:
-        """The derivative of the distance by a parameter; NaN where the dead centre's is infinite."""
-        change = -motion[f"Y_wrt_{parameter}"]
-        before = motion[self.centre] < motion["Y"]
-        if isinstance(change, float):
-            if parameter in LENGTHS:
-                change += _finite_or_nan(motion[f"{self.centre}_wrt_{parameter}"])
-            return -change if before else change
-        with IMPORTS:
-            import numpy as np
-
-        if parameter in LENGTHS:
-            by_centre = motion[f"{self.centre}_wrt_{parameter}"]
-            change = change + np.where(np.isfinite(by_centre), by_centre, np.nan)
-        return np.where(before, -change, change)
-
     def _content(self) -> str:
         return f"{self.dead_centre} {super()._content()}"
-
-
-def _finite_or_nan(x: float) -> float:
-    return x if x - x == 0.0 else nan
