@@ -84,7 +84,10 @@ def evaluate_arrays(
         if loads is not None:
             scalars |= loads.tables()
             for name, made in _functions(loads, {**scalars, **arrays}).items() if loads.functions else ():
-                (arrays if np.ndim(made) else scalars)[name] = made if np.ndim(made) else float(made)
+                if np.ndim(made):
+                    arrays[name] = made
+                else:
+                    scalars[name] = float(made)
         loops = loops_over(arrays, shape)
         loops = loops if loads is None else loops.taken_by(wanted)
         fill(wanted, scalars, loops, list(buffers.values()), threads, keys=keys)
