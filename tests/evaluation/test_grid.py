@@ -81,9 +81,8 @@ def test_the_signature_names_every_input():
     named = [name for name in parameters if name in INPUTS]
     assert named == list(INPUTS) == list(Inputs.__annotations__)
     assert not any(p.kind is inspect.Parameter.VAR_KEYWORD for p in parameters.values())
-    assert {"names", "branch", "accuracy", "threads", "out", "reduce", "chunks"} == set(parameters) - set(
-        named
-    )
+    others = {"names", "branch", "accuracy", "threads", "out", "reduce", "chunks", "sliders"}
+    assert others == set(parameters) - set(named)
 
 
 def test_a_position_needs_no_motion():
