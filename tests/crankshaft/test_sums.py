@@ -139,7 +139,7 @@ def pair(machine, call="evaluate", name="T_in", **inputs):
         ),
         (lambda m: dx.Crankshaft([m, m.replace(omega0=3.0)], phase=[0, 1]), "omega0 is one for all"),
         (lambda m: dx.Crankshaft([m, m], phase=[0, 1, 2]), "2 machines and 3 phases"),
-        (lambda m: dx.Crankshaft(m, phase=[0, 1], bank=[0, 1, 2]), "bank: .* number for each of 2"),
+        (lambda m: dx.Crankshaft(m, phase=[0, 1], bank=[0, 1, 2]), "phase: .* number for each of 3"),
         (lambda m: dx.Crankshaft(m, phase=[0, 1], spacing=1, position=[0, 1]), "spacing=, or position="),
         (lambda m: dx.Crankshaft(m.replace(AB=[0.04, 0.05]), phase=[0, 1]), "AB is an array"),
         (lambda m: dx.Crankshaft({"AB": 1.0}, phase=[0, 1]), "expected a Machine"),
@@ -149,6 +149,7 @@ def pair(machine, call="evaluate", name="T_in", **inputs):
         (lambda m: pair(m, "peak", **{"AB[3]": 1.0}), "sliders 0 to 1"),
         (lambda m: pair(m, "peak", speed=1.0), "no input 'speed'"),
         (lambda m: pair(m, "fit", {}), "fit is of one slider"),
+        (lambda m: pair(m, "compile", to="c"), "a scene is of one slider"),
     ],
 )
 def test_what_is_wrong_is_said(call, message):

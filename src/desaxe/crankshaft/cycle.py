@@ -27,6 +27,7 @@ class ShaftCycle(Cycle):
     def __init__(self, caller: str, sliders: SliderSums, inputs: Mapping[str, Any], ends: Any = None) -> None:
         state = {name: read(INPUTS[name], value, caller) for name, value in inputs.items() if name in STATE}
         others = {name: value for name, value in inputs.items() if name not in STATE}
+        self.named = [name for name in others if name.endswith("]") or name == "I_shaft"]
         self.sliders = sliders.replaced(others)
         speed = {"omega0": state.get("omega", state.get("omega0"))}  # of conditions that depend on it
         self.own = [
@@ -125,7 +126,7 @@ class ShaftTurn(Turn, ShaftCycle):
         """The inputs of the sliders that matter to the torque, and the phases."""
         every = [name for own in self.own for name in own.moving_parameters]
         phases = [f"phase[{k}]" for k in range(len(self.own))]
-        return tuple(dict.fromkeys([*every, *phases]))
+        return tuple(dict.fromkeys([*every, *phases, *self.named]))
 
     @computed_once
     def parameters(self) -> tuple[str, ...]:

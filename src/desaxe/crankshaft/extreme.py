@@ -1,5 +1,6 @@
 """The extreme value of a sum over sliders, its angle and its exact gradient."""
 
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from ..support.panels import Array, Panels, resolved
 from .cycle import ShaftTurn
 
 SIGNS = {"max": (1.0,), "min": (-1.0,), "absmax": (1.0, -1.0)}
+Values = Callable[[Sequence[str], Array, Any], dict[str, Array]]
 JUMP = 1e-9  # of the largest value: a change at one angle that is a jump
 
 
@@ -37,6 +39,40 @@ def extreme_of(turn: ShaftTurn, name: str, kind: str) -> dict[str, Any]:
         "value": float(value), "theta": float(theta), "side": side,
         "gradient": {p: float(sign * slope) for p, slope in gradient.items()}, "status": 0,
     }  # fmt: skip
+
+
+def extremes_of(
+    turn_of: Callable[[int], ShaftTurn], values: Values, edges: Array, name: str, kind: str
+) -> dict[str, Any]:
+    """The same of many crankshafts at once, as arrays.
+
+    turn_of  the turn of one of them, for extremes between panels and angles without a value
+    values   quantities at angles of the crankshafts `row`
+    edges    a row for each, NaN in empty places
+    """
+    panels = resolved(lambda theta, row: values([name], theta, row), edges)
+    row, nodes = np.arange(len(edges)), panels.values[name]
+    known = np.asarray(np.isfinite(nodes).all((1, 2)))
+    nodes = np.where(known[:, None, None], nodes, 0.0)
+    tops = [panels.extreme(nodes, sign) for sign in SIGNS[kind]]
+    which = np.argmax([np.abs(one[0]) for one in tops], axis=0)
+    top, theta, inside = (np.array(part)[which, row] for part in zip(*tops, strict=True))
+    by = turn_of(0).slopes_of(name)
+    slopes = values([*by.values()], theta, row)
+    sign = np.sign(top) if kind == "absmax" else np.ones(top.shape)
+    found: dict[str, Any] = {
+        "value": np.abs(top) if kind == "absmax" else top.copy(), "theta": theta.copy(),
+        "side": np.zeros(row.size, np.int8), "status": np.zeros(row.size, np.int8),
+    }  # fmt: skip
+    gradient = {p: sign * slopes[n] for p, n in by.items()}
+    for k in np.flatnonzero(~(known & inside)).tolist():
+        one = extreme_of(turn_of(k), name, kind)
+        for key, column in found.items():
+            column[k] = one[key]
+        for p, column in gradient.items():
+            column[k] = one["gradient"][p]
+    status = found.pop("status")
+    return {**found, "gradient": gradient, "status": status}
 
 
 def _at_edge(

@@ -1,6 +1,6 @@
 """`Sliders`: what calls take as `sliders=`, several sliders on one crankshaft."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +19,7 @@ from ..simulation.request import Ask, in_time
 from ..simulation.result import Simulation
 from ..support.answer import Answer
 from .cycle import ShaftTurn
-from .extreme import extreme_of
+from .extreme import extreme_of, extremes_of
 from .motion import ShaftModel
 from .sums import SliderSums, indexed, number
 
@@ -46,16 +46,28 @@ class Sliders(SliderSums):
         with using(self.definitions):
             arrays = {n: np.asarray(v) for n, v in given.items() if np.ndim(v) and not callable(v)}
             shape = np.broadcast_shapes(*(a.shape for a in arrays.values()))
-            rows = {n: np.broadcast_to(a, shape).ravel().tolist() for n, a in arrays.items()}
-            found = [
-                extreme_of(
-                    ShaftTurn("peak", self, {**given, **{n: r[k] for n, r in rows.items()}}, theta),
-                    name,
-                    kind,
-                )
-                for k in range(int(np.prod(shape)))
-            ]
-            return Answer(_stacked(found, shape), partial(units_of_extreme, name), PeakStatus)
+            rows = {n: np.broadcast_to(a, shape).ravel() for n, a in arrays.items()}
+
+            def turn_of(k: int) -> ShaftTurn:
+                return ShaftTurn("peak", self, {**given, **{n: r[k].item() for n, r in rows.items()}}, theta)
+
+            def values(names: Sequence[str], angles: Any, row: Any) -> dict[str, Any]:
+                state = {**given, **{n: r[row] for n, r in rows.items()}, "theta": angles}
+                found: dict[str, Any] = self.evaluate(list(names), state)
+                return {n: np.broadcast_to(v, np.shape(angles)) for n, v in found.items()}
+
+            size = int(np.prod(shape))
+            if not size:
+                raise ValueError("peak: an empty array; expected at least one crankshaft")
+            if not shape:
+                return Answer(extreme_of(turn_of(0), name, kind), partial(units_of_extreme, name), PeakStatus)
+            first = np.array(turn_of(0).ends) if self.smooth else None
+            each = [turn_of(k).edges([name]) if first is None else first for k in range(size)]
+            edges = np.full((size, max(map(len, each))), np.nan)
+            for k, own in enumerate(each):
+                edges[k, : len(own)] = own
+            found = _shaped(extremes_of(turn_of, values, edges, name, kind), shape)
+            return Answer(found, partial(units_of_extreme, name), PeakStatus)
 
     def motion(self, ask: Ask, given: Mapping[str, Any], starts: Mapping[str, Any], times: Any) -> Simulation:
         """`desaxe.simulate` of the shaft."""
@@ -113,13 +125,7 @@ def described(name: str) -> dict[str, Any]:
     return {"units": str(unit_of(name)), "long_name": meaning}
 
 
-def _stacked(found: list[dict[str, Any]], shape: tuple[int, ...]) -> dict[str, Any]:
-    """Results of several designs as arrays of a shape; of one as it is."""
-    if not shape:
-        return found[0]
-    keys = ("value", "theta", "side", "status")
-    rows: dict[str, Any] = {key: np.reshape([one[key] for one in found], shape) for key in keys}
-    slopes = {
-        p: np.reshape([one["gradient"].get(p, np.nan) for one in found], shape) for p in found[0]["gradient"]
-    }
-    return {**{k: rows[k] for k in keys[:3]}, "gradient": slopes, "status": rows["status"]}
+def _shaped(found: dict[str, Any], shape: tuple[int, ...]) -> dict[str, Any]:
+    """Results of several designs in their shape."""
+    gradient = {p: slope.reshape(shape) for p, slope in found["gradient"].items()}
+    return {n: gradient if n == "gradient" else column.reshape(shape) for n, column in found.items()}

@@ -14,10 +14,10 @@ import numpy as np
 
 from ..evaluation.evaluate import Values, evaluate
 from ..mechanism.catalogue import has, quantity
-from ..mechanism.inputs import INPUTS, Input
-from ..mechanism.names import parts, sensitivity
+from ..mechanism.inputs import INPUTS, row_of
+from ..mechanism.names import LENGTHS, parts, sensitivity
 from ..mechanism.own import Definition, register, using
-from ..mechanism.quantity_units import si_unit, units_by_name
+from ..mechanism.quantity_units import units_by_name
 from ..mechanism.read import number_of, read_array
 from ..runtime.request import check_common, several
 
@@ -113,8 +113,7 @@ def number(name: str, value: Any) -> Any:
     """A number, or an array as it broadcasts; None where it is not given."""
     if value is None or hasattr(value, "dims"):
         return value
-    plain = indexed(name)[0]
-    row = INPUTS.get(plain) or Input(plain, si_unit(plain), "")
+    row = row_of(name)
     result = number_of(row, value)
     return read_array(row, value) if result is None else result
 
@@ -179,6 +178,20 @@ class SliderSums:
     def inputs_of_each(self) -> list[dict[str, Any]]:
         """The inputs of all sliders in their frames."""
         return [self.inputs_of(k) for k in range(len(self.members))]
+
+    @property
+    def smooth(self) -> bool:
+        """True where no load, friction or user-defined quantity can have a kink."""
+        rows = [member.inputs for member in self.members]
+        bent = (callable(v) or (name == "mu" and np.any(v)) for row in rows for name, v in row.items())
+        return not any(bent) and not register().definitions
+
+    def shared_lengths(self) -> dict[str, Any]:
+        """The lengths of the sliders; TypeError where these differ."""
+        rows = [{name: member.inputs.get(name) for name in LENGTHS} for member in self.members]
+        if any(row != rows[0] for row in rows):
+            raise TypeError("optimize: of sliders with the same lengths")
+        return rows[0]
 
     def numbers(self) -> dict[str, Any]:
         """The inputs that are numbers by name, of all sliders and of one, their angles, and loads."""

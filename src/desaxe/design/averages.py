@@ -26,6 +26,8 @@ BLOCK = 512  # designs whose panels are in memory at a time
 
 def average(kind: str, name: str, designs: Mapping[str, Any], branch: int) -> tuple[Array, dict[str, Array]]:
     """The mean or the root of the mean square of a quantity over a turn, and its derivatives."""
+    if "sliders" in designs:
+        raise TypeError(f"{kind} of {name}: `drive` has those of a crankshaft's torque, `harmonics` the mean")
     inputs = _inputs(designs)
     for length in LENGTHS:
         if length not in inputs:
@@ -68,10 +70,13 @@ def at_angle(
     angle: Any, name: str, designs: Mapping[str, Any], branch: int
 ) -> tuple[Array, dict[str, Array]]:
     """A quantity at one angle, and its derivatives."""
-    inputs = _inputs(designs)
+    inputs, sliders = _inputs(designs), designs.get("sliders")
     slopes = _slopes(name, inputs)
+    if sliders is not None:
+        inputs = {p: v for p, v in designs.items() if v is not None and p != "theta"}
+        slopes = {p: f"{name}_wrt_{p}" for p, v in inputs.items() if np.ndim(v)}
     found = evaluate([name, *slopes.values()], theta=angle_of(angle), branch=branch, **inputs)
-    shape = np.broadcast_shapes(*(np.shape(v) for v in inputs.values() if not callable(v)))
+    shape = np.broadcast_shapes(*(np.shape(v) for v in inputs.values() if np.ndim(v)))
     full = {n: np.broadcast_to(array, shape) for n, array in found.items()}
     return full[name], {p: full[slope] for p, slope in slopes.items()}
 

@@ -9,7 +9,7 @@ from ..loads.load import Load
 from ..loads.resolve import settled
 from ..loads.units import function_in_si, slopes_in_si
 from ..mechanism import read
-from ..mechanism.inputs import INPUTS, Input
+from ..mechanism.inputs import INPUTS, OF_SHAFTS, Input
 from ..mechanism.names import WHOLE
 from ..mechanism.quantity_units import OTHERS, UnitSystem, si_unit
 from ..support.forks import IMPORTS
@@ -25,7 +25,7 @@ def has_unit(name: str) -> bool:
     """True where an argument of this name, or of one slider of several, is a quantity with a unit."""
     if name.endswith("]"):
         name = name.partition("[")[0]
-    return name in INPUTS or name in OTHERS or name in POSITIONS or name in WHOLE
+    return name in INPUTS or name in OF_SHAFTS or name in OTHERS or name in POSITIONS or name in WHOLE
 
 
 def in_si(system: UnitSystem, name: str, value: Any) -> Any:

@@ -70,7 +70,7 @@ class Crankshaft(Machine):
             raise TypeError("Crankshaft: expected a Machine or a list of them, with one slider each")
         system = machines[0].units if units is None else UnitSystem.read(units)
         with errors_in(system):
-            count = max(np.size(phase), len(machines))
+            count = max(len(machines), *map(np.size, (phase, bank, firing, position)))
             phases, banks = (_row(n, v, count, system) for n, v in (("phase", phase), ("bank", bank)))
             fired = phases + banks
             if firing is not None:
@@ -111,6 +111,18 @@ class Crankshaft(Machine):
             del speeds["omega0" if si.get("omega") is not None else "omega"]
         kept = {n: MachineSpeed(v) for n, v in speeds.items() if v is not None}
         return _restored({**kept, "sliders": sliders}, system)
+
+    def scene(self, outputs: Any = (), **more: Any) -> Any:
+        """Not of several sliders: TypeError."""
+        raise TypeError("a scene is of one slider: crankshaft.members[0].scene(...)")
+
+    def to_scene(self, path: Any, outputs: Any = (), *, overwrite: bool = False, **more: Any) -> Any:
+        """Not of several sliders: TypeError."""
+        return self.scene()
+
+    def report(self, path: Any, outputs: Any = None, **more: Any) -> Any:
+        """Not of several sliders: TypeError."""
+        return self.scene()
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (self._inputs, self.units)

@@ -1,6 +1,7 @@
 """Pictures of a machine: `machine.plot("a_C")`, and those of `desaxe.plot` with its inputs filled in."""
 
 from collections.abc import Mapping, Sequence
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from ..mechanism.closed import TURN
 from ..mechanism.own import using
 from ..plot.mechanism import label_lengths
 from ..runtime.request import several
+from ..support.shown import printed
 from .arguments import in_si
 from .tornado import tornado
 
@@ -51,6 +53,42 @@ class Plots:
         """Draw a quantity, or the magnitude of a vector, in polar coordinates: see `desaxe.plot.polar`."""
         names = [name] if isinstance(name, str) else list(several(name))
         return plot.polar(self._over_theta(names, inputs), name, family=family, ax=ax)
+
+    def each(self, name: str, *, ax: Any = None, **inputs: Any) -> Any:
+        """Draw a quantity of each slider of a crankshaft, thin, and their sum.
+
+        Forces are along the axis of each slider; in one line they are those of the shaft.
+        """
+        parts = [f"{name}[{k}]" for k in range(len(self._machine["sliders"].members))]
+        dataset = self._over_theta([name, *parts], inputs)
+        total = plot.curves(dataset, name, ax=ax)
+        axes = total[0].axes
+        degrees = total[0].get_xdata()
+        theta = self._machine.units.of("theta").to_si(dataset.theta.values)
+        for k, part in enumerate(parts):
+            axes.plot(np.degrees(theta), dataset[part], linewidth=0.8, label=f"slider {k}")
+        total[0].set_label("sum")
+        axes.set_xlim(degrees.min(), degrees.max())
+        axes.relim()
+        axes.autoscale_view()
+        axes.legend()
+        return total
+
+    def star(self, name: str = "F_inertia_Y", order: float = 1, *, ax: Any = None, **inputs: Any) -> Any:
+        """Draw one harmonic of each slider as an arrow, tip to tail: the star closes where they balance.
+
+        name   a quantity of a crankshaft; each slider's is along its own axis
+        order  of the harmonic, half ones under loads of two turns
+        """
+        arrows = {}
+        for k in range(len(self._machine["sliders"].members)):
+            series = self._machine.harmonics(f"{name}[{k}]", orders=max(1, ceil(order)), **inputs)
+            at = int(np.argmin(np.abs(series["order"] - order)))
+            if series["order"][at] != order:
+                raise ValueError(f"plot.star: order = {order}: there are {series['order'][:3].tolist()} ...")
+            arrows[f"slider {k}"] = complex(series["cos"][at], series["sin"][at])
+        unit = printed(self._machine.units.of(name).unit)
+        return plot.star(arrows, f"{name}, order {order:g}", unit, ax=ax)
 
     def mechanism(self, theta: Any = "60 deg", *, ax: Any = None) -> Any:
         """Draw the machine to scale at a crank angle: see `desaxe.plot.mechanism`."""

@@ -107,6 +107,13 @@ INPUTS = {
         ),
     ),
 }  # fmt: skip
+# Of several sliders on one crankshaft; with an index but for the last.
+OF_SHAFTS = {
+    "phase": Input("phase", "rad", "lag of a slider's dead centre"),
+    "bank": Input("bank", "rad", "angle of a slider's axis"),
+    "position": Input("position", "m", "from the middle of the shaft to a slider"),
+    "I_shaft": Input("I_shaft", "kg*m^2", "moment of inertia of the shaft", 0.0, _INERTIA),
+}
 # Magnitudes between which nothing overflows, nor underflows to a wrong value. The least is that of the rod;
 # what is much smaller vanishes beside it.
 SAFE = 1e-60, 1e60
@@ -118,6 +125,12 @@ LEAST = {name: row.least for name, row in INPUTS.items() if row.least is not Non
 def names_in(*sections: str) -> tuple[str, ...]:
     """The inputs of some sections of a scene, in their order."""
     return tuple(row.name for row in INPUTS.values() if row.section in sections)
+
+
+def row_of(name: str) -> Input:
+    """The row of an input, also of one slider of several: "AB[2]", "phase[1]"; KeyError for another name."""
+    plain = name.partition("[")[0]
+    return (INPUTS.get(plain) or OF_SHAFTS[plain])._replace(name=name)
 
 
 def is_good(name: str, value: float) -> bool:

@@ -61,6 +61,7 @@ def parts(name: str) -> tuple[str, tuple[str, ...]]:
     return base, tuple(found)
 
 
+@lru_cache(maxsize=4096)
 def sensitivity(name: str, *parameters: str) -> str:
     """The name of the derivative of a name by more parameters, in their order; unknown ones last."""
     base, before = parts(name)

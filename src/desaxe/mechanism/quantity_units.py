@@ -14,7 +14,7 @@ from typing import Any
 from ..support.computed import computed_once
 from ..units.system import DIMENSIONS, Conversion, conversions_by_unit, read_units, size_in
 from .catalogue import quantity
-from .inputs import INPUTS
+from .inputs import INPUTS, OF_SHAFTS
 from .names import parts
 from .own import Register, register
 
@@ -22,7 +22,7 @@ PLAIN = Conversion("1")
 # Units of inputs and results that are no quantities of the catalogue.
 OTHERS = {
     **dict.fromkeys(("V_outward", "V_inward"), "m/s"),
-    **dict.fromkeys(("theta0", "until", "phase", "bank", "firing", "angle", "theta_intervals"), "rad"),
+    **dict.fromkeys(("theta0", "until", "phase", "firing", "angle", "theta_intervals"), "rad"),
     **dict.fromkeys(("omega_start", "omega_mean", "synchronous_speed"), "rad/s"),
     **dict.fromkeys(("t", "t_end", "t_last", "times", "period"), "s"),
     **dict.fromkeys(
@@ -34,10 +34,10 @@ OTHERS = {
     ),
     **dict.fromkeys(("work", "work_in", "work_out"), "J"),
     **dict.fromkeys(("power_mean", "power_peak"), "W"),
-    **dict.fromkeys(("flywheel_inertia", "I_shaft"), "kg*m^2"),
+    "flywheel_inertia": "kg*m^2",
     **dict.fromkeys(("C_inertia_X", "C_inertia_Y"), "N*m"),
     **dict.fromkeys(("breakdown_slip", "gear"), "1"),
-    **dict.fromkeys(("radius", "position", "spacing"), "m"),
+    **dict.fromkeys(("radius", "spacing"), "m"),
     "mass": "kg",
     "product": "kg*m",
 }  # fmt: skip
@@ -123,6 +123,8 @@ def si_unit(name: str) -> str:
         name = name.partition("[")[0]
     if name in INPUTS:
         return INPUTS[name].unit
+    if name in OF_SHAFTS and name != "phase":
+        return OF_SHAFTS[name].unit
     if name in OTHERS:
         return OTHERS[name]
     if name.startswith("theta_"):

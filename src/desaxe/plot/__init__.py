@@ -10,6 +10,7 @@ drive       drive torque over a turn, and the speed with its flywheel
 motion      histories of the motion that a torque causes, with its events
 load        a load over the crank angle or the slider's position, with its points
 steady      speed and torque of a machine on its motor, and the working loop on its curve
+star        what each slider of a crankshaft adds to a harmonic, as arrows
 animate     the same as it turns, beside a quantity's curve
 save        a figure or animation to a file
 picture     what each of them returns: figure, axes, artists
@@ -33,6 +34,7 @@ from .panels import panels as panels
 from .picture import Picture as Picture
 from .polar import polar as polar
 from .save import save as save
+from .star import star as star
 from .steady import steady as steady
 from .tornado import tornado as tornado
 
@@ -48,6 +50,7 @@ __all__ = [
     "panels",
     "polar",
     "save",
+    "star",
     "steady",
     "tornado",
 ]

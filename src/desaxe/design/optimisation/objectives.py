@@ -8,7 +8,7 @@ import numpy as np
 from ...evaluation.reductions.own_measure import OwnMeasure
 from ...evaluation.under_loads.loaded import loads_of
 from ...loads.along_motion import with_derivatives
-from ...mechanism.inputs import INPUTS, Input
+from ...mechanism.inputs import INPUTS, Input, row_of
 from ...mechanism.keywords import check_inputs
 from ...mechanism.messages import Message, NamedValue, amount, message_of, named
 from ...mechanism.names import LENGTHS
@@ -61,12 +61,16 @@ def space_of(
     branch: int,
     deadline: Deadline,
     caller: str = "optimize",
+    sliders: Any = None,
 ) -> Space:
-    """The box of free parameters and the fixed inputs."""
+    """The box of free parameters and the fixed inputs; several sliders share their lengths."""
     known = tuple(name for name in INPUTS if name != "theta")
     _check_mapping("over", over, "{'ec': (0, 0.1)}")
-    check_inputs(caller, over, known)
-    check_inputs(caller, fixed, known)
+    if sliders is None:
+        check_inputs(caller, over, known)
+        check_inputs(caller, fixed, known)
+    else:
+        fixed = {**{n: v for n, v in sliders.shared_lengths().items() if n not in over}, **fixed}
     if not over:
         raise ValueError("over= is empty: name at least one parameter and its bounds, such as ec=(0, 0.1)")
     both = [name for name in over if name in fixed]
@@ -80,7 +84,8 @@ def space_of(
         raise TypeError(f"{caller}: {missing[0]} is missing (in over= or as a number)")
     loads = with_derivatives(loads, {**numbers, **{name: max(pair) for name, pair in ends.items()}})
     low, high = (np.array([pair[i] for pair in ends.values()]) for i in (0, 1))
-    return Space(tuple(over), low, high, {**numbers, **loads}, branch, deadline)
+    several = {} if sliders is None else {"sliders": sliders}
+    return Space(tuple(over), low, high, {**numbers, **loads, **several}, branch, deadline)
 
 
 def _check_mapping(name: str, given: Any, example: str) -> None:
@@ -106,7 +111,7 @@ def _pair(name: str, bounds: Any) -> tuple[float, float]:
 
 
 def _number(name: str, value: Any) -> float:
-    return read(INPUTS[name], value, "optimize")
+    return read(row_of(name), value, "optimize")
 
 
 def limits_of(keep: Mapping[Any, Any]) -> list[Limit]:

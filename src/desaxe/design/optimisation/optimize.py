@@ -31,6 +31,7 @@ def optimize(
     points: int = 11,
     seed: int = 0,
     timeout: float | None = 120.0,
+    sliders: Any = None,
     **fixed: Any,
 ) -> dict[str, Any]:
     """The design that makes a quantity as large or as small as possible, within limits.
@@ -44,6 +45,7 @@ def optimize(
     keep                dict of the same names -> (low, high), None where there is no limit, or ("==", value).
                         The crank always turns fully: margin >= 0
     fixed               all other parameters, as in `evaluate`; F_X and F_Y may vary with the motion
+    sliders             those of a `Crankshaft` of one machine, whose phases and banks may vary, too
     starts, seed        how many local searches, from the best of a scan of the space
     timeout             seconds after which it ends with a TimeoutError; None for no limit
     points              designs along a Pareto front (to the power of the objectives less one)
@@ -87,7 +89,7 @@ def optimize(
     whole_number("seed", seed, 0, 2**32 - 1)
     deadline = Deadline("optimize", timeout)
     goals = goals_of(maximize, minimize)
-    space = space_of(over, fixed, branch, deadline)
+    space = space_of(over, fixed, branch, deadline, sliders=sliders)
     limits = limits_of({} if keep is None else keep)
     with deadline.shown():
         if len(goals) > 1:

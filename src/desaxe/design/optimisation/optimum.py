@@ -108,7 +108,8 @@ def _message(
     if status == UNSURE:
         unsure = f", where the optimality conditions hold to {found.residual:.1g} only: more starts= may help"
         return "the search ended at " + where + unsure
-    names = {key: key if key in INPUTS else text_of(checked(key)) for key in active}
+    plain = {key: key in INPUTS or key in space.names for key in active}
+    names = {key: key if plain[key] else text_of(checked(key)) for key in active}
     held = ", ".join(f"{names[key]} ({side})" for key, side in active.items())
     rest = f", held back by {held}" if held else _inside(space, found.z)
     return "optimum at " + where + f"{_kink(goal, found)}{rest}{_left_out(what, search)}"
@@ -200,7 +201,7 @@ def _missed(found: Candidate, search: LocalSearch) -> Message:
 def units_of_optimum(goals: list[Goal], found: Mapping[str, Any]) -> dict[Any, Any]:
     """The units of the design, of the objectives, and of what they gain by relaxing a limit."""
     values = {goal.key: unit_of(goal.measure) for goal in goals}
-    units = units_by_name({key: value for key, value in found.items() if key in INPUTS})
+    units = units_by_name({key: value for key, value in found.items() if key in INPUTS or "[" in key})
     if isinstance(found["value"], Mapping):
         return {**units, "value": values}
     gains = slopes_of(goals[0].measure, found["multipliers"])

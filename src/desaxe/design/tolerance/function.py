@@ -37,8 +37,11 @@ class SampledQuantity(NamedTuple):
     def slopes(self, columns: Mapping[str, Any]) -> Array:
         """The exact first derivatives over samples, one column for each input that varies."""
         if self.at_point:
-            names = {p: sensitivity(str(self.measure), p) for p in self.varying}
-            names = {p: name for p, name in names.items() if has(name, self.state)}
+            if "sliders" in self.fixed:
+                names = {p: f"{self.measure}_wrt_{p}" for p in self.varying}
+            else:
+                names = {p: sensitivity(str(self.measure), p) for p in self.varying}
+                names = {p: name for p, name in names.items() if has(name, self.state)}
             found = evaluate([*names.values()], branch=self.branch, **self.fixed, **columns) if names else {}
             gradient: Mapping[str, Any] = {p: found[name] for p, name in names.items()}
         else:

@@ -30,7 +30,7 @@ PERCENTS = (0.135, 2.5, 50.0, 97.5, 99.865)
 BOXES = 2000  # of an enclosure
 MOST_CORNERED = 10  # inputs
 MOST_SAMPLES = 10**8
-MANY, SOME = 100_000, 10_000  # samples of a quantity at a point, and of a peak
+MANY, SOME, FEW = 100_000, 10_000, 1_000  # samples of a quantity at a point, of a peak, of one of a sum
 
 
 @with_known_keywords
@@ -42,6 +42,7 @@ def tolerance(
     sigmas: float = 3.0,
     samples: int | None = None,
     seed: int = 0,
+    sliders: Any = None,
     **inputs: Any,
 ) -> Tolerance:
     """The scatter of a quantity whose inputs have tolerances or distributions.
@@ -52,7 +53,8 @@ def tolerance(
                   "10 mm +- 0.1 mm" or "10 mm +- 1 %"; `dx.between(low, high)`; or a distribution of
                   scipy.stats, frozen. F_X and F_Y may vary with the motion
     distribution  within a tolerance: "normal", the tolerance being that many `sigmas`, or "uniform"
-    samples       of the Monte Carlo, by default 100000, or 10000 of a peak
+    samples       of the Monte Carlo, by default 100000, or 10000 of a peak, 1000 of several sliders
+    sliders       those of a `Crankshaft`, of which a quantity at a crank angle or a peak is asked for
 
     Returns a dict that prints three lines: the value, its spread, what drives it; `report()` has all:
 
@@ -97,8 +99,8 @@ def tolerance(
         raise ValueError(
             f"tolerance: every input is exact; give one as dx.plus_minus(value, tolerance){missing}"
         )
-    function = _function(name, given, branch)
-    count = samples or (MANY if function.at_point else SOME)
+    function = _function(name, given if sliders is None else {**given, "sliders": sliders}, branch)
+    count = samples or (MANY if function.at_point else SOME if sliders is None else FEW)
     covered = float(sigmas) if distribution == "normal" else None
     with progress_bar() as watch:
         return _answer(name, function, rough, Steps(3, watch), count, seed, covered)
@@ -161,6 +163,8 @@ def _function(name: Any, given: Mapping[str, Any], branch: int) -> SampledQuanti
     varying = tuple(n for n in given if n not in fixed)
     if design and "theta" in given:
         raise ValueError(f"theta: {name} is of a whole turn")
+    if "sliders" in given:
+        return SampledQuantity(checked(name) if design else name, not design, fixed, varying, branch)
     if design or name == "margin":
         for length in LENGTHS:
             if length not in given:
@@ -253,7 +257,7 @@ def _corners(rough: Sequence[Inexact], slopes: Array) -> dict[str, Array]:
 
 def _enclosed(name: str, ranges: Mapping[str, Any], branch: int) -> dict[str, Any] | None:
     """The guaranteed range; None where nothing guarantees it."""
-    if any(map(callable, ranges.values())):  # a load that varies with the motion
+    if "sliders" in ranges or any(map(callable, ranges.values())):  # a load that varies with the motion
         return None
     try:
         with IMPORTS:

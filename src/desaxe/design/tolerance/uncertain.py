@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...mechanism.inputs import INPUTS
+from ...mechanism.inputs import row_of
 from ...mechanism.messages import amount
 from ...mechanism.ranges import Between, PlusMinus, middle_of, refuse_bare_pair
 from ...mechanism.read import in_si
@@ -104,7 +104,7 @@ def _with_tolerance(name: str, value: PlusMinus) -> tuple[float, float]:
     if isinstance(second, str) and second.strip().endswith("%"):
         return nominal, _percent(name, second) * abs(nominal)
     if isinstance(second, str) or hasattr(second, "magnitude"):
-        return nominal, float(in_si(INPUTS[name], second))
+        return nominal, float(in_si(row_of(name), second))
     try:
         return nominal, float(second)
     except (TypeError, ValueError):
@@ -119,4 +119,4 @@ def _percent(name: str, text: str) -> float:
 
 
 def _number(name: str, value: Any) -> float:
-    return read_number(INPUTS[name], value, "tolerance", EXPECTED)
+    return read_number(row_of(name), value, "tolerance", EXPECTED)

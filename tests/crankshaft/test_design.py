@@ -1,0 +1,60 @@
+"""Tolerances, optima and pictures of crankshafts."""
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from tests.crankshaft.test_sums import CYLINDER
+
+ONE = dx.Machine(**CYLINDER | {"ec": 0.0}, omega0=200.0, units="deg")
+THREE = dx.Crankshaft(ONE, phase=[0, 110, 250])
+
+
+def test_a_tolerance_of_one_slider_and_of_a_phase():
+    inexact = {
+        "AB[1]": dx.plus_minus(0.045, 3e-4),
+        "phase[2]": dx.plus_minus(250, 0.6),
+        "m_slider": "0.4 +- 0.03",
+    }
+    slopes = {p: THREE.evaluate(f"T_in_wrt_{p}", theta=40) for p in inexact}
+    expected = np.sqrt(sum((slopes[p] * s) ** 2 for p, s in zip(inexact, (1e-4, 0.2, 0.01), strict=True)))
+    result = THREE.tolerance("T_in", theta=40, **inexact)
+    assert result["first_order"]["std"] == pytest.approx(expected, rel=1e-12)
+    assert abs(result["agreement"]["std"]) < 5.0
+    peak = THREE.tolerance(("max", "T_in"), samples=200, **inexact)
+    assert peak["gradient"]["AB[1]"] == pytest.approx(
+        THREE.peak("T_in", kind="max", **{"AB[1]": 0.045})["gradient"]["AB[1]"]
+    )
+    assert abs(peak["agreement"]["std"]) < 6.0
+
+
+def test_the_best_phase_for_a_torque_at_an_angle():
+    over = {"phase[1]": (60, 170)}
+    best = THREE.optimize(maximize=("at", "90 deg", "T_in"), over=over, starts=1)
+    phases = np.linspace(60.0, 170.0, 11_001)
+    torque = THREE.evaluate("T_in", theta=90, **{"phase[1]": phases})
+    assert best["value"] == pytest.approx(torque.max(), rel=1e-8)
+    assert best["phase[1]"] == pytest.approx(phases[torque.argmax()], abs=0.02)
+
+
+def test_peaks_of_many_are_those_of_each():
+    changes = {"AB": [0.044, 0.045], "phase[1]": [100.0, 120.0]}
+    for kind in ("max", "min", "absmax"):
+        many = THREE.peak("T_in", kind=kind, **changes)
+        for k in range(2):
+            one = THREE.peak("T_in", kind=kind, **{p: v[k] for p, v in changes.items()})
+            assert many["value"][k] == pytest.approx(one["value"], rel=1e-12)
+            for p, slope in one["gradient"].items():
+                assert many["gradient"][p][k] == pytest.approx(slope, rel=1e-6, abs=1e-9), p
+
+
+def test_pictures_of_each_slider_and_of_a_star():
+    picture = THREE.plot.each("T_in", theta=np.arange(0.0, 361.0, 30.0))
+    lines = [line.get_ydata() for line in picture.axes.get_lines()[-3:]]
+    total = THREE.evaluate("T_in", theta=np.arange(0.0, 361.0, 30.0))
+    np.testing.assert_allclose(np.sum(lines, axis=0), total, rtol=1e-12, atol=1e-12)
+    star = THREE.replace(**{"phase[1]": 120, "phase[2]": 240}).plot.star("F_inertia_Y", order=1)
+    assert len(star.artists) == 3
+    assert star.axes.get_title(loc="left") == "F_inertia_Y, order 1; sum 0"
+    with pytest.raises(ValueError, match=r"order = 0.5: there are \[0, 1\]"):
+        THREE.plot.star("F_inertia_Y", order=0.5)
