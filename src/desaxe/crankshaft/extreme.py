@@ -44,7 +44,7 @@ def extreme_of(turn: ShaftTurn, name: str, kind: str) -> dict[str, Any]:
 def extremes_of(
     turn_of: Callable[[int], ShaftTurn], values: Values, edges: Array, name: str, kind: str
 ) -> dict[str, Any]:
-    """The same of many crankshafts at once, as arrays.
+    """Values, angles, sides, gradients and status of many crankshafts at once, as arrays.
 
     turn_of  the turn of one of them, for extremes between panels and angles without a value
     values   quantities at angles of the crankshafts `row`
