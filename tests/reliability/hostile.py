@@ -200,6 +200,9 @@ def calls() -> dict[str, Call]:
             {"distances": [0.0, 0.2], "outward": [1.0, 2.0], "dead_centre": "outer"},
             ("inward", "kind"),
         ),
+        "over_V": Call(dx.over_V, (), {"speeds": [-1.0, 1.0], "forces": [5.0, -5.0]}, ("kind", "derivative")),
+        "spring": Call(dx.spring, (), {"stiffness": 4e3, "free": 0.1}),
+        "damper": Call(dx.damper, (), {"linear": 200.0, "quadratic": 3.0}),
         "fit": Call(
             dx.fit,
             (SAMPLES,),

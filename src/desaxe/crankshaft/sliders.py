@@ -76,6 +76,8 @@ class Sliders(SliderSums):
         if turn.has_friction or turn.margin <= 0.0:
             raise ValueError("simulate: the crank of several sliders turns fully, without friction: "
                              + ("mu = 0" if turn.has_friction else "margin > 0"))  # fmt: skip
+        if ask.wrt and here.follows_speed:
+            raise ValueError("wrt: several sliders under loads that depend on the speed have no derivatives")
         if follows_the_slider(starts["torque"]):
             raise TypeError("torque: of several sliders; a function is of t, theta, omega")
         drive = drive_of(starts["torque"], None, None, ask.deadline, ask.derivative)

@@ -13,6 +13,8 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from ..evaluation.evaluate import Values, evaluate
+from ..loads.along_motion import OfMotion
+from ..loads.resolve import split
 from ..mechanism.catalogue import has, quantity
 from ..mechanism.inputs import INPUTS, row_of
 from ..mechanism.names import LENGTHS, parts, sensitivity
@@ -174,6 +176,12 @@ class SliderSums:
             if np.any(g):
                 found[name] = g
         return found
+
+    @property
+    def follows_speed(self) -> bool:
+        """True if a load of a slider depends on how fast the crank turns."""
+        loads = [load for inputs in self.inputs_of_each() for load in split(inputs)[1].values()]
+        return any(isinstance(load, OfMotion) and load.follows_speed for load in loads)
 
     def inputs_of_each(self) -> list[dict[str, Any]]:
         """The inputs of all sliders in their frames."""

@@ -134,6 +134,8 @@ def _designs(
     given = given if turn is None else {n: v for n, v in given.items() if n in SPEEDS}
     if turn is not None and turn.has_friction:
         raise ValueError("steady: of several sliders without friction, mu = 0")
+    if turn is not None and turn.sliders.follows_speed:
+        raise ValueError("steady: loads of several sliders must not depend on the speed")
     check_inputs("steady", given, [*OWN, *(n for n in INPUTS if n != "theta")])
     check_common(given, branch)
     numbers, loads = loads_of(given)

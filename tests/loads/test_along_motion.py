@@ -1,0 +1,197 @@
+"""Functions, springs, dampers and sums of loads: arguments by their names, units, derivatives by numbers."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from tests.loads.truth import slider
+
+LENGTHS = {"ec": 0.01, "AB": 0.04, "BC": 0.13}
+DESIGN = {**LENGTHS, "m_slider": 2.0, "I_crank": 0.05}
+TURNING = {**LENGTHS, "m_slider": 2.0, "omega0": 30.0}
+MOTOR = dx.over_omega([0.0, 300.0], [120.0, -330.0])
+NUMBERS = {"stiffness": 4000.0, "free": 0.12, "linear": 200.0, "quadratic": 3.0}
+
+
+def force(theta, omega, Y, V):
+    return -2000.0 * (Y - 0.1) - 60.0 * V + 5.0 * np.sin(theta) - 0.1 * omega
+
+
+def by_keyword(*, V_C, theta, omega, Y, k=1.0):
+    return k * force(theta, omega, Y, V_C)
+
+
+FUNCTIONS = {
+    "in another order": lambda V_C, Y, omega, theta: force(theta, omega, Y, V_C),
+    "by keyword": by_keyword,
+    "partial": partial(lambda k, omega, theta, Y, V_C: k * force(theta, omega, Y, V_C), 1.0),
+    "of numbers alone": lambda Y, V_C, theta, omega: float(force(theta, omega, Y, V_C)),
+    "from the dead centre": lambda s, V_C, theta, omega: force(theta, omega, REACH - s, V_C),
+}
+REACH = float(np.sqrt((LENGTHS["AB"] + LENGTHS["BC"]) ** 2 - LENGTHS["ec"] ** 2))
+
+
+def torque(theta):
+    """Newton's law of the slider, and virtual work."""
+    Y, slope, bend = slider(theta, LENGTHS, 1)
+    return (2.0 * 30.0**2 * bend - force(theta, 30.0, Y, 30.0 * slope)) * slope
+
+
+@pytest.mark.parametrize("load", FUNCTIONS.values(), ids=FUNCTIONS)
+def test_a_function_takes_what_its_arguments_name_in_every_call(load):
+    theta = np.linspace(0.1, 6.0, 9)
+    found = dx.evaluate("T_in", theta=theta, F_Y=load, **TURNING)
+    assert found == pytest.approx(torque(theta), rel=1e-12, abs=1e-11)
+    assert dx.evaluate("T_in", theta=1.0, F_Y=load, **TURNING) == pytest.approx(torque(1.0), rel=1e-12)
+    turn = np.linspace(0.0, 2.0 * np.pi, 20_001)
+    assert dx.peak("T_in", F_Y=load, **TURNING)["value"] == pytest.approx(
+        np.abs(torque(turn)).max(), rel=1e-7
+    )
+    assert dx.drive(F_Y=load, **TURNING)["torque_mean"] == pytest.approx(torque(turn[:-1]).mean(), rel=1e-9)
+    run = dx.simulate(torque=5.0, t_end=0.5, omega_start=30.0, F_Y=load, names="F_C_Y", **DESIGN)
+    same = dx.simulate(torque=5.0, t_end=0.5, omega_start=30.0, F_Y=FUNCTIONS["by keyword"], **DESIGN)
+    assert run["omega"] == pytest.approx(same["omega"], rel=1e-9)
+    assert run["status"] == 0
+    speed = dx.steady(torque=MOTOR, F_Y=load, **DESIGN)["omega"]
+    assert speed == pytest.approx(dx.steady(torque=MOTOR, F_Y=by_keyword, **DESIGN)["omega"], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("load", "message"),
+    [
+        (lambda x: x, "arguments, t, theta, omega, Y, s, V_C, but <lambda> has x"),
+        (lambda *several: 1.0, "has none without a default"),
+        (lambda Y=1.0: Y, "has none without a default"),
+        (lambda t, Y: Y, "a function of t is not served by this call, which passes theta, omega, Y, s, V_C"),
+        (max, "max does not say what its arguments are"),
+    ],
+)
+def test_other_functions_are_refused(load, message):
+    with pytest.raises(TypeError, match=message):
+        dx.evaluate("T_in", theta=1.0, F_Y=load, **TURNING)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: dx.over_Y(lambda a, b: a), "over_Y: a function of one argument is expected.* a, b"),
+        (lambda: dx.over_V([1, 0], [1, 2]), "over_V: the speeds must ascend, but 0 follows 1"),
+        (lambda: dx.over_V([0, 1], ["1 Pa", "2 Pa"]), "N"),
+        (lambda: dx.over_V([0, 1]), "over_V: forces is missing"),
+        (lambda: dx.spring(-1.0, 0.1), "stiffness = -1.0: it must be a stiffness >= 0"),
+        (lambda: dx.spring("3 N", 0.1), "stiffness"),
+        (lambda: dx.damper(linear=np.nan), "linear = nan"),
+        (lambda: dx.spring([1.0, 2.0], 0.1), "stiffness"),
+        (lambda: dx.spring(1.0, 0.1) + float("inf"), "the number must be finite"),
+        (lambda: dx.simulate(torque=dx.spring(1.0, 0.1), t_end=1.0, **DESIGN), "torque = <spring"),
+        (lambda: dx.steady(torque=dx.over_V([0, 1], [1, 0]), **DESIGN), "torque = <load over V_C"),
+        (lambda: dx.evaluate("T_in_wrt_AB", theta=1.0, F_Y=lambda V_C: V_C, **TURNING), "desaxe.over_V"),
+        (
+            lambda: dx.simulate(torque=1.0, t_end=1.0, F_Y=dx.spring(1.0, 0.1), wrt="F_Y.stif", **DESIGN),
+            "wrt: no parameter 'F_Y.stif'.*F_Y.stiffness",
+        ),
+        (lambda: dx.Machine(units="mm, N", F_Y=dx.spring(4e3, 0.1)), "machine.spring"),
+    ],
+)  # fmt: skip
+def test_what_makers_refuse(make, message):
+    with pytest.raises((TypeError, ValueError), match=message):
+        make()
+
+
+def test_the_units_of_a_machine():
+    press = dx.Machine(units="mm, deg, rpm, N, kg", AB=40, BC=130, ec=10, omega0=300, m_slider=2)
+    Y, V = press.evaluate("Y", theta=60), press.evaluate("V_C", theta=60)
+    forces = {
+        -4.0 * (Y - 120.0): [
+            press.spring(4, free=120), press.spring("4000 N/m", "12 cm"), lambda Y: -4 * (Y - 120),
+        ],
+        -0.2 * V - 1e-5 * V * abs(V): [
+            press.damper(0.2, 1e-5), press.damper("200 N s/m", "10 N s^2/m^2"),
+            lambda V_C: -0.2 * V_C - 1e-5 * V_C * abs(V_C),
+            press.over_V(lambda V: -0.2 * V - 1e-5 * V * abs(V)),
+        ],
+        -300.0 * 60.0: [lambda omega, theta: -omega * theta],
+        2.0 * Y + 7.0: [2 * press.over_Y(lambda y: y, derivative=lambda y: 1.0) + 7],
+    }  # fmt: skip
+    for number, loads in forces.items():
+        for load in loads:
+            found = press.evaluate("T_in", theta=60, F_Y=load)
+            assert found == pytest.approx(press.evaluate("T_in", theta=60, F_Y=number), rel=1e-12)
+            held = press.replace(F_Y=load).evaluate("T_in", theta=60)
+            assert held == pytest.approx(found, rel=1e-12)
+    assert str(press.spring(4, free=120)) == "<spring: 4 N/mm, free at 120 mm>"
+    assert press.damper(0.2)(1000.0) == pytest.approx(-200.0)
+    turning = press.simulate(torque=lambda omega: 40 - 0.1 * omega, t_end=0.5, I_crank="0.05 kg m^2")
+    right = dx.simulate(
+        torque=lambda omega: 40 - 3.0 / np.pi * omega, t_end=0.5, omega_start=10 * np.pi, **DESIGN
+    )
+    assert turning["omega"] == pytest.approx(right["omega"] * 30.0 / np.pi, rel=1e-9)
+
+
+def loads_of(numbers):
+    return dx.spring(numbers["stiffness"], numbers["free"]) + dx.damper(
+        numbers["linear"], numbers["quadratic"]
+    )
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.1])
+def test_motions_and_steady_states_have_derivatives_by_the_numbers_of_loads(mu):
+    def run(numbers, **more):
+        load = loads_of(numbers)
+        return dx.simulate(
+            torque=6.0, t_end=0.7, omega_start=20.0, F_Y=load, mu=mu, rtol=1e-12, **DESIGN, **more
+        )
+
+    def orbit(numbers):
+        return dx.steady(torque=MOTOR, F_Y=loads_of(numbers), mu=mu, **DESIGN)
+
+    whole, turning = run(NUMBERS, wrt=[f"F_Y.{name}" for name in NUMBERS]), orbit(NUMBERS)
+    for name, value in NUMBERS.items():
+        h = 1e-4 * value
+        ends = [{**NUMBERS, name: value + side * h} for side in (1, -1)]
+        one, other = map(run, ends)
+        for key in ("theta", "omega"):
+            slope = (one[key][-1] - other[key][-1]) / (2.0 * h)
+            assert whole[f"{key}_wrt_F_Y.{name}"][-1] == pytest.approx(slope, rel=1e-4), name
+        assert whole[f"work_wrt_F_Y.{name}"] == pytest.approx(
+            (one["work"] - other["work"]) / (2.0 * h), rel=1e-3
+        )
+        one, other = map(orbit, ends)
+        for key in ("omega_mean", "fluctuation", "power_mean"):
+            slope = (one[key] - other[key]) / (2.0 * h)
+            assert turning["gradient"][key][f"F_Y.{name}"] == pytest.approx(slope, rel=1e-4, abs=1e-12), name
+
+
+def test_a_drag_takes_its_power():
+    """The mean power of a damper is that of linear V^2 + quadratic |V|^3."""
+    theta = 2.0 * np.pi * (np.arange(40_000) + 0.5) / 40_000
+    V = 30.0 * slider(theta, LENGTHS, 1)[1]
+    power = np.mean(200.0 * V**2 + 3.0 * np.abs(V) ** 3)
+    found = dx.drive(F_Y=dx.damper(linear=200.0, quadratic=3.0), **TURNING)
+    assert found["power_mean"] == pytest.approx(power, rel=1e-8)
+    assert found["gradient"]["power_mean"]["omega0"] == pytest.approx(
+        np.mean(400.0 * V**2 + 9.0 * np.abs(V) ** 3) / 30.0, rel=1e-7
+    )
+
+
+def test_a_die_and_a_spring_jump_where_the_die_does():
+    die = dx.over_stroke([0.0, 0.008, 0.008], [-8e3, -8e3, 0.0], [0.0, 0.0, 0.0], dead_centre="outer")
+    load = die + dx.spring(2e3, free=0.1)
+    theta = np.linspace(0.0, 2.0 * np.pi, 400_001)
+    Y, slope, bend = slider(theta, LENGTHS, 1)
+    pushed = np.where((REACH - Y < 0.008) & (slope > 0.0), -8e3, 0.0)
+    right = (2.0 * 30.0**2 * bend - pushed + 2e3 * (Y - 0.1)) * slope
+    found = dx.peak("T_in", F_Y=load, **TURNING)
+    assert found["value"] == pytest.approx(np.abs(right).max(), rel=1e-4)
+    assert dx.drive(F_Y=load, **TURNING)["torque_mean"] == pytest.approx(right[:-1].mean(), rel=1e-4)
+    one, other = (dx.peak("T_in", F_Y=load, **{**TURNING, "AB": 0.04 + h})["value"] for h in (1e-6, -1e-6))
+    assert found["gradient"]["AB"] == pytest.approx((one - other) / 2e-6, rel=1e-4)
+
+
+def test_a_crankshaft_refuses_steady_states_of_loads_that_depend_on_the_speed():
+    machine = dx.Machine(**TURNING, F_Y=dx.damper(200.0))
+    shaft = dx.Crankshaft(machine, phase=[0.0, np.pi], I_shaft=0.1)
+    with pytest.raises(ValueError, match="must not depend on the speed"):
+        shaft.steady(torque=MOTOR)
