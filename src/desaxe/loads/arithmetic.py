@@ -21,6 +21,7 @@ from .table import Row, Table, polynomial
 
 T = TypeVar("T", bound=Load)
 MOST_PERIODS = 64  # of the shorter one of two in the period of their sum
+ROUNDED = 1e-13  # of a knot: more than a shift by an angle rounds
 SAME_KIND = ("linear", "step")  # pieces that stay of their kind on more knots
 
 
@@ -186,8 +187,11 @@ def _sum_over_Y(one: OverY, other: OverY) -> OverY | None:
 def _sum(one: Table, other: Table, kind: str) -> Table | None:
     """The sum of two tables of one kind; None where it is of no kind."""
     period = None if one.period is None or other.period is None else _common([one.period, other.period])
-    both = [_over(table, period) for table in (one, other)]
-    if not kind or (both[0].knots != both[1].knots and kind not in SAME_KIND):
+    first = _over(one, period)
+    both = [first, _snapped(_over(other, period), first.knots)]
+    # A periodic spline is the only one through its points, on more knots, too.
+    stays = kind in SAME_KIND or (kind == "cubic" and period is not None)
+    if not kind or (both[0].knots != both[1].knots and not stays):
         return None
     every = [table.knots for table in both]
     knots = sorted(x for x in {*every[0], *every[1]} for _ in range(max(k.count(x) for k in every)))
@@ -208,6 +212,17 @@ def _over(table: Table, period: float | None) -> Table:
     turns = round(period / table.period)
     every = tuple(knot + turn * table.period for turn in range(turns) for knot in base)
     return Table(every, (pieces[-1], *(pieces * turns)), period)
+
+
+def _snapped(table: Table, knots: tuple[float, ...]) -> Table:
+    """A table whose knots are those given where they differ by rounding."""
+
+    def nearest(x: float) -> float:
+        k = bisect_left(knots, x)
+        best = min(knots[max(k - 1, 0) : k + 1], key=lambda knot: abs(knot - x))
+        return best if abs(best - x) <= ROUNDED * (1.0 + abs(x)) else x
+
+    return replace(table, knots=tuple(map(nearest, table.knots)))
 
 
 def _piece(table: Table, x: float, before: bool) -> Row:
