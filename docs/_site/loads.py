@@ -1,8 +1,11 @@
 """Which call takes which kind of load: each is called once with each, when the site is built."""
 
+import io
 import tempfile
+from base64 import b64encode
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 
 import desaxe as dx
@@ -98,6 +101,30 @@ def loads():
         each = ["yes" if takes(call, load) else "" for load in KINDS.values()]
         rows.append(f"| `{call}` | {' | '.join(each)} |")
     return "\n".join([f"| call | {' | '.join(KINDS)} |", "|---|" + "---|" * len(KINDS), *rows])
+
+
+PICTURED = {
+    "over_theta": (KINDS["`over_theta`"], None),
+    "over_Y": (dx.over_Y([0.03, 0.05, 0.1], [-900.0, -200.0, -50.0], [-900.0, -400.0, -150.0]), None),
+    "over_stroke": (
+        dx.over_stroke([0.0, 8e-3, 8e-3], [-8e4, -8e4, 0.0], [0.0] * 3, dead_centre="outer"),
+        None,
+    ),
+    "spring": (dx.spring(4e3, free=0.12), (0.08, 0.16)),
+    "damper": (dx.damper(linear=50.0, quadratic=40.0), (-3.0, 3.0)),
+    "over_V": (dx.over_V([-2.0, 0.0, 2.0], [900.0, 0.0, -400.0]), None),
+}
+
+
+def load_picture(name):
+    """A picture of a load of a kind."""
+    load, over = PICTURED[name]
+    file = io.BytesIO()
+    with matplotlib.rc_context({"svg.hashsalt": name}):
+        dx.plot.load(load, over=over).figure.savefig(file, format="svg", metadata={"Date": None})
+    data = b64encode(file.getvalue()).decode()
+    words = repr(load).strip("<>")
+    return f'<img alt="{words}" src="data:image/svg+xml;base64,{data}">'
 
 
 WRITERS = (loads,)

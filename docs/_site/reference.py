@@ -170,7 +170,7 @@ def inputs():
     return "\n".join(["| name | unit | meaning | limit |", "|---|---|---|---|", *rows])
 
 
-WRITERS = (api, returned)
+WRITERS = (api, returned, loads.load_picture)
 WRITTEN = {
     writer.__name__: writer
     for writer in (summary, quantities, inputs, statuses, scene, *loads.WRITERS, *formulas.WRITERS)

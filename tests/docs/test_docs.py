@@ -251,7 +251,7 @@ def test_every_call_with_loads_is_in_their_table(monkeypatch):
     assert with_inputs <= told
 
 
-@pytest.mark.parametrize(("call", "kinds"), [("evaluate", 5), ("peak", 5), ("function", 1)])
+@pytest.mark.parametrize(("call", "kinds"), [("evaluate", 7), ("peak", 7), ("function", 1)])
 def test_the_table_of_loads_says_what_happens(call, kinds, monkeypatch):
     monkeypatch.syspath_prepend(ROOT / "docs" / "_site")
     loads = import_module("loads")
