@@ -179,6 +179,24 @@ def test_its_command_makes_it_again(made, tmp_path):
         dx.undefine(outputs)
 
 
+def test_slopes_are_in_the_units_of_the_page_and_a_torque_is_drawn_once(tmp_path):
+    machine = dx.Machine(ec=10, AB=50, BC=200, omega0=300, m_slider=4000, m_rod=1000, units="mm, deg, rpm, g")
+    page = Page(machine.report(tmp_path / "a.html", ["a_C", "T_in"], theta=FEW).read_text())
+    units = {"ec": "N m/mm", "omega0": "N m/rpm", "m_slider": "N m/g", "m_rod": "N m/g"}
+    for name, unit in units.items():
+        step = 1e-3 * machine.in_units()[name]
+        ends = [
+            machine.replace(**{name: machine.in_units()[name] + d}).peak("T_in")["value"]
+            for d in (step, -step)
+        ]
+        (slope,) = [row[1] for row in page.rows if row[:1] == [name] and row[2:] == [unit]]
+        assert float(slope) == pytest.approx((ends[0] - ends[1]) / (2 * step), rel=1e-5), name
+    words = "".join(page.words)
+    assert words.count("Torque of the drive") == 1
+    assert "a_C over theta" in words
+    assert words.count("T_in over theta") == 1  # in the list of the values, not in a picture
+
+
 def test_angles_are_those_of_a_turn_and_rounding_is_no_torque(tmp_path):
     page = Page(PRESS.report(tmp_path / "a.html", theta=FEW).read_text())
     outer = np.degrees(np.arcsin(-10 / 250)) + 360  # crank and rod in a line, C at X = -ec

@@ -23,6 +23,10 @@ from .plots import Plots
 from .scenes import inputs_of_scene, is_scene, scene_of, write_scene
 from .summary import html_of, text_of
 
+MAKERS = {
+    "over_theta": MakeOverTheta, "over_Y": MakeOverY, "over_stroke": MakeOverStroke, "over_V": MakeOverV,
+    "spring": MakeSpring, "damper": MakeDamper, "over_omega": MakeOverOmega, "kloss": MakeKloss,
+}  # fmt: skip
 LOADS = ("F_X", "F_Y")
 OUTPUTS = ("Y", "V_C", "a_C")
 SPEEDS = ("omega0", "omega", "alpha")
@@ -189,46 +193,6 @@ class Machine(Mapping[str, Any]):
         return found
 
     @property
-    def over_theta(self) -> MakeOverTheta:
-        """`desaxe.over_theta`, and its `read`, with plain numbers in the units of the machine."""
-        return MakeOverTheta(self.units)
-
-    @property
-    def over_Y(self) -> MakeOverY:
-        """`desaxe.over_Y`, and its `read`, with plain numbers in the units of the machine."""
-        return MakeOverY(self.units)
-
-    @property
-    def over_stroke(self) -> MakeOverStroke:
-        """`desaxe.over_stroke`, and its `read`, with plain numbers in the units of the machine."""
-        return MakeOverStroke(self.units)
-
-    @property
-    def over_V(self) -> MakeOverV:
-        """`desaxe.over_V` with plain numbers in the units of the machine."""
-        return MakeOverV(self.units)
-
-    @property
-    def spring(self) -> MakeSpring:
-        """`desaxe.spring` with plain numbers in the units of the machine."""
-        return MakeSpring(self.units)
-
-    @property
-    def damper(self) -> MakeDamper:
-        """`desaxe.damper` with plain numbers in the units of the machine."""
-        return MakeDamper(self.units)
-
-    @property
-    def over_omega(self) -> MakeOverOmega:
-        """`desaxe.over_omega` with plain numbers in the units of the machine."""
-        return MakeOverOmega(self.units)
-
-    @property
-    def kloss(self) -> MakeKloss:
-        """`desaxe.kloss` with plain numbers in the units of the machine."""
-        return MakeKloss(self.units)
-
-    @property
     def plot(self) -> Plots:
         """Pictures: `plot("a_C")` over the crank angle, `plot.mechanism()` and others of `desaxe.plot`."""
         return Plots(self)
@@ -372,8 +336,16 @@ class Machine(Mapping[str, Any]):
         return sorted({*super().__dir__(), *METHODS})
 
 
+def _in_its_units(name: str, maker: Any) -> property:
+    """The maker of a load or motor as a property."""
+    doc = f"`desaxe.{name}`, and its `read`, with plain numbers in the units of the machine."
+    return property(lambda machine: maker(machine.units), doc=doc)
+
+
 for _name in METHODS:
     setattr(Machine, _name, Method(_name))
+for _name, _maker in MAKERS.items():
+    setattr(Machine, _name, _in_its_units(_name, _maker))
 
 
 def _restored(

@@ -24,6 +24,7 @@ from .spread import spread
 
 TITLE = "Offset slider-crank"
 PACKAGES = ("numpy", "numba")
+DRIVEN = ("T_in",)  # drawn with the drive
 
 
 class Page(NamedTuple):
@@ -47,12 +48,13 @@ def document_of(content: Content, run: Run, units: UnitSystem, page: Page) -> Do
         warnings.simplefilter("always")
         run = replace(run, peaks=(*run.peaks, *peaks_of_outputs(content)))
         shown = in_units_shown(content, run, units)
+        driven = drive(content, units, page.fluctuation)
         sections = [
             inputs(content, units),
             mechanism(content, units),
             *results(content, shown, units),
-            curves(content, shown, units),
-            drive(content, units, page.fluctuation),
+            curves(content, shown, units, DRIVEN if driven else ()),
+            driven,
             spread(content, units, page.tolerances),
         ]
     own = [str(one.message) for one in heard if one.category.__module__.startswith("desaxe.")]

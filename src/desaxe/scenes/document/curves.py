@@ -1,5 +1,6 @@
 """The section on curves: the outputs over the crank angle, and the pictures that the scene asks for."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,9 +24,15 @@ PANELS, SAMPLES, CURVES = 3, 20_001, 6  # in a picture, along a curve, of a fami
 ALWAYS = (*STATUSES, "margin")
 
 
-def curves(content: Content, run: Run, units: UnitSystem) -> Section | None:
-    """The outputs over theta, or over the first axis, and the scene's own pictures; None without any."""
-    blocks = [] if run.dataset is None else _of_outputs(run.dataset)
+def curves(content: Content, run: Run, units: UnitSystem, elsewhere: Sequence[str]) -> Section | None:
+    """The outputs over theta, or over the first axis, and the scene's own pictures; None without any.
+
+    elsewhere  outputs that are drawn in another section, where theta alone varies
+    """
+    blocks: list[Block] = []
+    if run.dataset is not None:
+        again = [n for n in elsewhere if n in run.dataset and run.dataset[n].dims == ("theta",)]
+        blocks += _of_outputs(run.dataset.drop_vars(again))
     for picture in content.pictures:
         axes = drawn(picture, content, units)
         blocks.append(image_of(axes.figure, picture.title or f"{picture.quantity} over {picture.over}"))

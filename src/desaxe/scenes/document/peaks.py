@@ -9,6 +9,7 @@ import numpy as np
 from ...evaluation.in_units import in_units
 from ...loads.load import OverY
 from ...mechanism.catalogue import quantity
+from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
 from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import PeakStatus
@@ -52,7 +53,7 @@ def peak(result: PeakResult, units: UnitSystem) -> Section:
     title = one.title or f"{WORDS[one.kind].capitalize()} of {one.quantity}, {known.meaning}"
     blocks: list[Block] = [_designs(result, units)]
     if not one.axes:
-        blocks += _gradient(result)
+        blocks += _gradient(result, units)
     blocks += map(Text, [*_remarks(result), *(_claim(result, claim, units) for claim in result.claims)])
     return Section(f"{title} (theta from {low} to {high} deg)", blocks)
 
@@ -68,7 +69,7 @@ def _designs(result: PeakResult, units: UnitSystem) -> TextTable:
     heads += [f"over {_design(one.at_baseline, units)}"] * is_based
     heads += [f"d/d({str(slope.name).removeprefix('value_wrt_')})" for slope in slopes]
     units_of = [*(_unit(dataset[name]) for name in (*one.axes, "value")), "deg" if scale > 1.0 else angle]
-    units_of += [*[""] * (has_sides + is_based), *map(_unit, slopes)]
+    units_of += [*[""] * (has_sides + is_based), *(_slope_unit(result, slope, units) for slope in slopes)]
     rows = []
     for index in thinned(list(np.ndindex(dataset["value"].shape)), ROWS):
         row = [cell(dataset[name].values[k]) for name, k in zip(one.axes, index, strict=True)]
@@ -79,11 +80,15 @@ def _designs(result: PeakResult, units: UnitSystem) -> TextTable:
     return TextTable(heads, rows, units_of)
 
 
-def _gradient(result: PeakResult) -> list[Block]:
+def _gradient(result: PeakResult, units: UnitSystem) -> list[Block]:
     """The whole gradient of one design, a row for each parameter."""
     slopes = [array for name, array in result.dataset.data_vars.items() if str(name).startswith("value_wrt_")]
     rows = [
-        (str(slope.name).removeprefix("value_wrt_"), _slope(result, slope, ()), _unit(slope))
+        (
+            str(slope.name).removeprefix("value_wrt_"),
+            _slope(result, slope, ()),
+            _slope_unit(result, slope, units),
+        )
         for slope in slopes
     ]
     return [TextTable(("derivative by", "value", "unit"), rows)] if rows else []
@@ -94,6 +99,15 @@ def _slope(result: PeakResult, slope: Any, index: tuple[int, ...]) -> str:
     value = float(slope.values[index])
     sideways = str(slope.name).removeprefix("value_wrt_") in SIDEWAYS
     return f"+-{cell(abs(value))}" if value and sideways and result.mirrored[index] else cell(value)
+
+
+def _slope_unit(result: PeakResult, slope: Any, units: UnitSystem) -> str:
+    """The unit of a slope: of one with respect to a mass or an inertia that of the value, divided."""
+    name = str(slope.name).removeprefix("value_wrt_")
+    if not INPUTS[name].unit.startswith("kg"):
+        return _unit(slope)
+    divisor = printed(units.of(name).unit)
+    return f"{_unit(result.dataset['value'])}/{f'({divisor})' if ' ' in divisor else divisor}"
 
 
 def _unit(array: Any) -> str:
