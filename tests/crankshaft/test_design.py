@@ -58,3 +58,14 @@ def test_pictures_of_each_slider_and_of_a_star():
     assert star.axes.get_title(loc="left") == "F_inertia_Y, order 1; sum 0"
     with pytest.raises(ValueError, match=r"order = 0.5: there are \[0, 1\]"):
         THREE.plot.star("F_inertia_Y", order=0.5)
+
+
+def test_the_report_has_the_figures_of_the_calls(tmp_path):
+    page = THREE.report(tmp_path / "three.md", ["T_in"]).read_text(encoding="utf-8")
+    drive, top, weight = THREE.drive(), THREE.peak("T_in"), THREE.counterweight()
+    gradient = top["gradient"]["phase[1]"]
+    for value in (drive["torque_rms"], drive["flywheel_inertia"], top["value"], gradient, weight["product"]):
+        assert f"{value:.6g}" in page
+    assert "| 1 | 110 |" in page
+    with pytest.raises(TypeError, match="without tolerances"):
+        THREE.report(tmp_path / "other.md", tolerances={"AB": 1e-4})

@@ -13,6 +13,7 @@ from ..mechanism.messages import errors_in, listed, named
 from ..mechanism.quantity_units import UnitSystem, si_unit
 from ..mechanism.read import read, read_array
 from ..runtime.request import MachineSpeed
+from ..support.forks import IMPORTS
 from .arguments import in_si
 from .machine import Machine
 
@@ -120,9 +121,27 @@ class Crankshaft(Machine):
         """Not of several sliders: TypeError."""
         return self.scene()
 
-    def report(self, path: Any, outputs: Any = None, **more: Any) -> Any:
-        """Not of several sliders: TypeError."""
-        return self.scene()
+    def report(
+        self,
+        path: Any,
+        outputs: Any = None,
+        *,
+        tolerances: Mapping[str, Any] | None = None,
+        fluctuation: float = 0.03,
+        overwrite: bool = False,
+        **more: Any,
+    ) -> Any:
+        """Write a page to hand on, .html or .md: sliders, drive, peaks of outputs, balance; its path.
+
+        Inputs of `more` replace those of the crankshaft; tolerances are those of `tolerance` alone. Needs the
+        extras `labelled` and `plot`.
+        """
+        if tolerances:
+            raise TypeError("report: of a crankshaft without tolerances; see crankshaft.tolerance(...)")
+        with IMPORTS:
+            from .crankshaft_report import write_report
+
+        return write_report(self.replace(**more), path, outputs, fluctuation, overwrite)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (self._inputs, self.units)

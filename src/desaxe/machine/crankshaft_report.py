@@ -1,0 +1,84 @@
+"""`Crankshaft.report`: its sliders, drive, peaks and balance as one page to hand on."""
+
+from collections.abc import Sequence
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from ..evaluation.labels import source
+from ..scenes.document.blocks import Document, Lines, Section, TextTable, cell, image_of
+from ..scenes.document.write import require_document, write_document
+from ..support.files import as_path
+from ..support.shown import printed
+
+OUTPUTS = ("T_in", "F_shaking_X", "F_shaking_Y", "M_shaking")
+BALANCE = ("F_inertia_X", "F_inertia_Y", "M_inertia", "C_inertia_X", "C_inertia_Y")
+ORDERS = 6
+
+
+def write_report(
+    shaft: Any, path: str | PathLike[str], outputs: Sequence[str] | None, fluctuation: float, overwrite: bool
+) -> Path:
+    """Compute and write the page of a crankshaft; its path."""
+    file = as_path("path", path)
+    require_document(file, overwrite)
+    names = OUTPUTS if outputs is None else (outputs,) if isinstance(outputs, str) else tuple(outputs)
+    sections = [_sliders(shaft), _drive(shaft, fluctuation), _peaks(shaft, names), _balance(shaft)]
+    sections.append(Section("Origin", [Lines(source())]))
+    title = f"Crankshaft with {len(shaft.members)} sliders"
+    return write_document(Document(title, sections), file, overwrite)
+
+
+def _unit(shaft: Any, name: str) -> str:
+    return printed(shaft.units.of(name).unit)
+
+
+def _sliders(shaft: Any) -> Section:
+    """The angles of the sliders, and the inputs of each."""
+    heads = ("phase", "bank", "firing", "position")
+    rows = [
+        (str(k), *(cell(float(shaft.units.of(n).shown(getattr(member, n)))) for n in heads))
+        for k, member in enumerate(shaft["sliders"].members)
+    ]
+    angles = TextTable(("slider", *heads), rows, ("", *(_unit(shaft, n) for n in heads)))
+    alike = [one for k, one in enumerate(shaft.members) if one not in shaft.members[:k]]
+    return Section("Sliders", [angles, *(Lines(repr(one)) for one in alike)])
+
+
+def _drive(shaft: Any, fluctuation: float) -> Section:
+    """Torque, power and flywheel, with the torque of each slider."""
+    result = shaft.drive(fluctuation=fluctuation)
+    picture = image_of(shaft.plot.each("T_in").figure, "Torque of all sliders and of each")
+    return Section("Drive", [TextTable(("figure", "value"), result.rows()), picture])
+
+
+def _peaks(shaft: Any, names: Sequence[str]) -> Section:
+    """The largest magnitudes, their angles, and what inputs do to them."""
+    tables = []
+    for name in names:
+        top, unit, angle = shaft.peak(name), _unit(shaft, name), _unit(shaft, "theta")
+        rows = [(name, cell(top["value"]), unit), ("at theta", cell(top["theta"]), angle)]
+        for p, slope in top["gradient"].items():
+            rows.append((f"by {p}", cell(slope), printed(shaft.units.slope(name, p).unit)))
+        tables.append(TextTable(("largest magnitude", "value", "unit"), rows))
+    return Section("Peaks", tables)
+
+
+def _balance(shaft: Any) -> Section:
+    """The harmonics of inertia forces and couples, and the weights that balance the first two orders."""
+    series = {name: shaft.harmonics(name, orders=ORDERS) for name in BALANCE}
+    first = series[BALANCE[0]]["order"]
+    rows = [
+        (f"{order:g}", *(cell(found["amplitude"][k]) for found in series.values()))
+        for k, order in enumerate(first)
+        if order == int(order)
+    ]
+    orders = TextTable(("order", *BALANCE), rows, ("", *(_unit(shaft, name) for name in BALANCE)))
+    weight = shaft.counterweight()
+    parts = {"on the shaft": weight, "turning against it": weight["counter_rotating"]}
+    for way, part in weight["second_order"].items():
+        parts[f"at twice the speed, {way.replace('_', '-')}"] = part
+    rows = [(words, cell(part["product"]), cell(part["angle"])) for words, part in parts.items()]
+    units = ("", _unit(shaft, "product"), _unit(shaft, "angle"))
+    star = image_of(shaft.plot.star("F_inertia_Y", order=1).figure, "Star of the first order")
+    return Section("Balance", [orders, TextTable(("weight", "mass x radius", "angle"), rows, units), star])
