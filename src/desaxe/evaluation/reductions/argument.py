@@ -74,20 +74,15 @@ class Reductions(NamedTuple):
     @property
     def kinds(self) -> tuple[str, ...]:
         """All kinds, in their order."""
-        each = ((*stage.kinds, *(kind for kind, _ in stage.single)) for stage in self.stages)
-        return tuple(dict.fromkeys(kind for kinds in each for kind in kinds))
-
-    @property
-    def along(self) -> Reduction | None:
-        """The request as kinds along one axis; None where it is more than that."""
-        stage = self.stages[0]
-        more = self.at or self.functions or stage.single or len(self.stages) > 1 or len(stage.axes) > 1
-        return None if more else Reduction(stage.axes[0], stage.kinds)
+        kinds = (k for stage in self.stages for k in (*stage.kinds, *(one for one, _ in stage.single)))
+        return tuple(dict.fromkeys(kinds))
 
     @property
     def alone(self) -> Reduction | None:
         """The request as kinds along one axis that a kernel computes; None where it is more than that."""
-        return None if set(self.kinds) - set(KINDS) else self.along
+        stage = self.stages[0]
+        more = self.at or self.functions or stage.single or len(self.stages) > 1 or len(stage.axes) > 1
+        return None if more or set(stage.kinds) - set(KINDS) else Reduction(stage.axes[0], stage.kinds)
 
     def plain(self) -> dict[str, list[Any]]:
         """The request in plain lists, which tell it from another."""
@@ -195,13 +190,8 @@ def names_reduced(asked: Any) -> tuple[str, ...]:
     """The names that measures of a request are of, which need not be asked for beside it."""
     if isinstance(asked, Reductions):
         return ()
-    found: dict[str, None] = {}
-    for key, taken in _entries(asked).items():
-        for one in _listed(key, taken):
-            measure = _measure(one)
-            if isinstance(measure, tuple):
-                found[measure[-1]] = None
-    return tuple(found)
+    measures = [_measure(one) for key, taken in _entries(asked).items() for one in _listed(key, taken)]
+    return tuple(dict.fromkeys(one[-1] for one in measures if isinstance(one, tuple)))
 
 
 def _entries(asked: Any) -> Mapping[Any, Any]:
@@ -245,17 +235,16 @@ def _measure(one: Any) -> OwnMeasure | tuple[Any, ...] | None:
     """("rms", name), ("at", place, name) or a function; None for a kind."""
     if callable(one):
         return one if isinstance(one, OwnMeasure) else OwnMeasure(one)
-    if isinstance(one, (tuple, list)) and len(one) == 3 and one[0] == "at":
-        return "at", one[1], str(one[2])
-    if isinstance(one, (tuple, list)) and len(one) == 2 and all(isinstance(part, str) for part in one):
-        return None if _is_kind(one[1]) or not _is_kind(one[0]) else (one[0], one[1])
-    if isinstance(one, (tuple, list)) and len(one) == 2 and isinstance(one[1], str) and not _is_text(one[0]):
-        return (kind_of(one[0]), one[1])  # (("percentile", 95), name)
-    return None
-
-
-def _is_text(one: Any) -> bool:
-    return isinstance(one, str)
+    if not isinstance(one, (tuple, list)) or len(one) not in (2, 3):
+        return None
+    if len(one) == 3:
+        return ("at", one[1], str(one[2])) if one[0] == "at" else None
+    kind, name = one
+    if not isinstance(name, str):
+        return None
+    if isinstance(kind, str):
+        return (kind, name) if _is_kind(kind) and not _is_kind(name) else None
+    return kind_of(kind), name  # (("percentile", 95), name)
 
 
 def _is_kind(text: str) -> bool:
