@@ -13,7 +13,6 @@ from tests.repository.test_wheel import BUILD, copy_of_the_tree
 ROOT = Path(__file__).resolve().parents[2]
 # Every place that runs a text as code; what it runs was written by our compiler from its own Program.
 RUNS_TEXT = {
-    "src/desaxe/runtime/kernels.py",
     "src/desaxe/simulation/loops/torque.py",
     "src/desaxe/runtime/native_calls.py",
     "src/desaxe/compiler/languages/arrays.py",

@@ -18,9 +18,9 @@ from ..mechanism.constants import constants
 from ..mechanism.names import LENGTHS, STATUS, sensitivity
 from ..mechanism.own import Register, register, using
 from ..mechanism.own_lines import has_kinks
-from ..runtime.kernels import STRUCTURAL_ZEROS, all_have_wide_margins, have_wide_margins
+from ..runtime.kernels import STRUCTURAL_ZEROS
 from ..runtime.request import Request, accuracy_of, is_steady, request
-from ..runtime.threads import run_parts
+from ..runtime.threads import have_wide_margins, run_parts
 from ..support.progress import Portions, progress_bar
 from .course import course_of
 from .differences import with_slopes
@@ -316,7 +316,7 @@ def _in_form(search: Search, checked: Checked) -> Search:
     if not rows.size or search.extended or not own:
         return search
     lengths = {name: column[rows] for name, column in zip(LENGTHS, own, strict=True)}
-    if all_have_wide_margins(search.form, **lengths) or have_wide_margins(lengths, search.form).all():
+    if have_wide_margins(search.form, **lengths):
         return search._replace(form=search.form._replace(wide_margins=True))
     return search
 

@@ -6,18 +6,15 @@ from itertools import product
 from math import inf, nan, prod
 from typing import Any, NamedTuple
 
-from ..compiler.builder import function_text
 from ..compiler.kernel import Kernel
 from ..compiler.languages.python import compile_python
 from ..compiler.lowering import Limits, guarded_for_loops, guarded_pairs, nest, nest_of_two_forms
 from ..compiler.passes.trigonometry import Trigonometry
 from ..compiler.program import Line, Program
-from ..compiler.text import write_lines
 from ..mechanism.constants import constants, double_constants
 from ..mechanism.inputs import LEAST, SAFE
 from ..mechanism.names import LENGTHS, LOADS
 from ..mechanism.program import Variant
-from ..support.forks import IMPORTS
 from .request import Request, check_angle
 from .specialise import plain_form, specialise
 
@@ -271,15 +268,6 @@ def _trigonometry(key: KernelKey) -> Trigonometry | None:
 # ---- wide margins: designs so far from every change point that plain forms do not cancel ---------------
 
 
-def have_wide_margins(lengths: Mapping[str, Any], form: Variant) -> Any:
-    """Mask of the designs with wide margins, from broadcastable arrays `ec`, `AB`, `BC`."""
-    with IMPORTS:
-        import numpy as np
-
-    with np.errstate(all="ignore"):
-        return np.asarray(_of_arrays(form)(*(lengths[name] for name in LENGTHS)))
-
-
 def all_have_wide_margins(form: Variant, ec: Any, AB: Any, BC: Any) -> bool:
     """True if every combination of these lengths (numbers or arrays) has wide margins.
 
@@ -296,27 +284,12 @@ def _extremes(values: Any) -> tuple[float, ...]:
     return (values,) if isinstance(values, float) else (float(values.min()), float(values.max()))
 
 
-def _test(form: Variant) -> Program:
-    return specialise(("wide_margins",), form._replace(wide_margins=False, under=None), ())._replace(
-        inputs=LENGTHS
-    )
-
-
 @lru_cache(maxsize=1024)
 def of_numbers(form: Variant) -> Callable[..., Any]:
     """The test as a function of three numbers."""
-    return compile_python(_test(form))
+    return compile_python(specialise(*wide_margins_of(form)), LENGTHS)
 
 
-@lru_cache(maxsize=1024)
-def _of_arrays(form: Variant) -> Callable[..., Any]:
-    """The test as a function of arrays: numba's spelling is NumPy's, too."""
-    with IMPORTS:
-        import numpy as np
-
-    lines = [*write_lines(_test(form), "numba"), "return wide_margins"]
-    source = function_text("test", LENGTHS, lines)
-    scope: dict[str, Any] = {"fabs": np.fabs, "inf": np.inf}
-    exec(compile(source, "<desaxe wide margins>", "exec"), scope)
-    test: Callable[..., Any] = scope["test"]
-    return test
+def wide_margins_of(form: Variant) -> tuple[tuple[str, ...], Variant, tuple[tuple[str, float], ...]]:
+    """The names, variant and fixed inputs of the test."""
+    return ("wide_margins",), form._replace(wide_margins=False, under=None), ()

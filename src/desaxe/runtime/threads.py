@@ -10,10 +10,12 @@ from itertools import pairwise
 from threading import Event
 from typing import TYPE_CHECKING, Any
 
+from ..mechanism.names import LENGTHS
+from ..mechanism.program import Variant
 from ..support.forks import IMPORTS, in_child
 from ..support.signals import put_off
 from .executor import kernel_for
-from .kernels import KernelKey
+from .kernels import KernelKey, all_have_wide_margins, wide_margins_of
 
 if TYPE_CHECKING:
     from concurrent.futures import Future, ThreadPoolExecutor
@@ -78,6 +80,20 @@ def run_in_blocks(
 
     in_blocks(block, outs[0].shape[0], outs[0].size, threads, least)
     return bool(counted)
+
+
+def have_wide_margins(form: Variant, ec: Any, AB: Any, BC: Any) -> bool:
+    """True if all designs of these columns have wide margins."""
+    with IMPORTS:
+        import numpy as np
+
+    columns = dict(zip(LENGTHS, (ec, AB, BC), strict=True))
+    if not ec.size or all_have_wide_margins(form, **columns):
+        return bool(ec.size)
+    wide = np.empty(ec.size, np.int8)
+    key = KernelKey(*wide_margins_of(form), tuple((name, 0) for name in sorted(LENGTHS)), 1)
+    run_in_blocks(key, columns, [wide], 1)
+    return bool(wide.all())
 
 
 def _settled(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> bool:

@@ -14,8 +14,8 @@ from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
 from ...mechanism.program import Variant
-from ...runtime.kernels import have_wide_margins
 from ...runtime.specialise import specialise
+from ...runtime.threads import have_wide_margins
 from ...support.roots import roots
 from ..feasibility.arrays import only_good
 from .found import VELOCITIES, DesignEvents, stroke_ends
@@ -89,8 +89,7 @@ def _fastest(a: Array, b: Array, here: dict[str, Any]) -> tuple[Array, NDArray[n
     sides = [here[name][within] for name in LENGTHS]
     unit = np.frexp(sides[2])[1]  # in which no square leaves the range of doubles
     sides = [np.ldexp(side, -unit) for side in sides]
-    wide = have_wide_margins(dict(zip(LENGTHS, sides, strict=True)), Variant()).all()
-    acceleration = _acceleration(here["branch"], bool(wide))
+    acceleration = _acceleration(here["branch"], have_wide_margins(Variant(), *sides))
     inside = (v[within] for v in (a, b, first, last))
     end[within] = roots(lambda theta: acceleration(theta, *sides)[0], *inside)
     return end, within
