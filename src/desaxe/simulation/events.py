@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..mechanism.closed import TURN
 from ..mechanism.messages import Message, amount, named
+from ..support.computed import computed_once
 from ..support.roots import root, roots
 from .checks import SMALL
 from .coordinate import Coordinate
@@ -65,9 +66,29 @@ def angles_of(model: Model, until: Sequence[float]) -> list[Mark]:
     ]
 
 
-def marks_of(model: Model, until: Sequence[float]) -> list[Mark]:
+class Marks(list[Mark]):
+    """All angles to watch for; few of them lie in the range of a panel."""
+
+    @computed_once
+    def _columns(self) -> tuple[Array, Array, Array]:
+        """Angles, periods, and which are limit angles, for these are detected in the coordinate."""
+        rows = [(mark.angle, mark.every, mark.kind == "limit") for mark in self]
+        angle, every, limit = np.array(rows or np.empty((0, 3)), float).T
+        return angle, every, limit
+
+    def within(self, thetas: list[float]) -> list[Mark]:
+        """The marks that a passage through these angles may reach."""
+        angle, every, limit = self._columns
+        low, high = min(thetas), max(thetas)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            whole = np.floor((high - angle) / every) >= np.ceil((low - angle) / every)
+        reached = np.where(every == 0.0, (low <= angle) & (angle <= high), whole) | (limit != 0.0)
+        return [self[k] for k in np.flatnonzero(reached).tolist()]
+
+
+def marks_of(model: Model, until: Sequence[float]) -> Marks:
     """All angles to watch for."""
-    marks = angles_of(model, until)
+    marks = Marks(angles_of(model, until))
     for which, angle in model.vanishing().items():  # its two sides, so near that nothing is lost
         marks += [Mark("no inertia", angle + s * SMALL, which, TURN, NO_INERTIA) for s in (-1.0, 1.0)]
     first, last = model.coordinate.first, model.coordinate.last
@@ -133,7 +154,7 @@ def along(panel: Panel, place: int) -> SeriesOnPanel:
 
 
 def events_in(
-    panel: Panel, model: Model, marks: list[Mark], left: float, heed: Callable[[], None]
+    panel: Panel, model: Model, marks: Marks, left: float, heed: Callable[[], None]
 ) -> list[Crossing]:
     """All events of a panel, in order; `left` is the angle that the stretch started from.
 
@@ -145,7 +166,7 @@ def events_in(
     parts = [0.0, *stops, 1.0]  # between them the crank turns one way
     places = [float(panel.y[Q]), *map(q, parts[1:])]
     thetas = [float(model.coordinate.theta(place)) for place in places]
-    for mark in marks:
+    for mark in marks.within(thetas):
         for passage in _passages(q, model, mark, parts, thetas, places, left):
             heed()
             found.append(passage)
@@ -163,14 +184,14 @@ def events_in(
 
 
 def events_along(
-    panels: Sequence[Panel], model: Model, marks: list[Mark], left: float
+    panels: Sequence[Panel], model: Model, marks: Marks, left: float
 ) -> list[tuple[Crossing, Array]]:
     """The events of panels on which nothing is cut and no speed vanishes, in order, with q and v there."""
     y, series = np.array([panel.y for panel in panels]), np.array([panel.series for panel in panels])
     theta = model.coordinate.theta(np.append(y[:, Q], panels[-1].end()[Q])).tolist()
     found = [
         (k, mark, model.coordinate.q(angle))
-        for mark in marks
+        for mark in marks.within(theta)
         if mark.kind != "limit"
         for k, (a, b) in enumerate(pairwise(theta))
         for angle in _between(a, b, mark.angle, mark.every)

@@ -25,6 +25,8 @@ ENDS = legendre.legvander(np.array([-1.0, 1.0]), NODES - 1) @ SERIES  # values a
 
 def basis(x: Array, degree: int) -> Array:
     """Legendre polynomials up to a degree, a row each, at places from -1 to 1."""
+    if x.size == 1:  # without the cost of arrays
+        return np.array(_basis_at(float(x[0]), degree))[:, None]
     rows = np.empty((degree + 1, x.size))
     rows[0], rows[1] = 1.0, x
     for n in range(1, degree):
@@ -32,6 +34,14 @@ def basis(x: Array, degree: int) -> Array:
         rows[n + 1] *= (2 * n + 1) / (n + 1)
         rows[n + 1] -= n / (n + 1) * rows[n - 1]
     return rows
+
+
+def _basis_at(x: float, degree: int) -> list[float]:
+    """The same at one place."""
+    values = [1.0, x]
+    for n in range(1, degree):
+        values.append(x * values[n] * ((2 * n + 1) / (n + 1)) - n / (n + 1) * values[n - 1])
+    return values
 
 
 class Panel(NamedTuple):
