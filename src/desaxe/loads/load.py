@@ -296,11 +296,13 @@ class OverY(Load):
 
     def held(self, Y: Any, piece: Any) -> tuple[Any, Any]:
         """The load and its derivative by Y on a piece, beyond its ends too; NaN at a non-finite position."""
-        if isinstance(Y, float) and isinstance(piece, int):
+        if isinstance(piece, int):
             table, number = self.outward, piece
             if self.inward is not None and piece >= len(table.rows):
                 table, number = self.inward, piece - len(table.rows)
-            return polynomial(table.rows[number], Y - table.origin(number)) if Y - Y == 0.0 else (nan, nan)
+            if isinstance(Y, float) and Y - Y != 0.0:
+                return nan, nan
+            return polynomial(table.rows[number], Y - table.origin(number))
         with IMPORTS:
             import numpy as np
 
