@@ -4,10 +4,12 @@ It takes the sine and cosine of an argument as arguments of their own (`lifted`)
 `sin_cos`, an array strip by strip, in a loop that vectorises.
 """
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Mapping
 
 from ...program import Program
 from ...text import with_short_temporaries
+from ..lifted import lifted
 from ..shared import one_line, safe_name, statements, types_of, with_safe_names
 from ..words import words_of
 
@@ -45,6 +47,26 @@ def static_function(
     head = f"static inline {'void' if status is None else 'int'} {name}({parameters or 'void'}) {{"
     opening = [f"/* {comment} */"] if comment else []
     return "\n".join([*opening, head, *(f"  {line}" for line in lines), "}"]) + "\n"
+
+
+def called_through(
+    name: str, program: Program, head: str, cells: Mapping[str, str], results: int, status: int | None
+) -> list[str]:
+    """The function of a program, and one with this head that passes it cells of arrays, and `out`.
+
+    Without a status the second returns 0.
+    """
+    form = lifted(program)
+    turns = {part: f"turn[{k}]" for pair in form.turns.values() for k, part in enumerate(pair)}
+    arguments = [turns.get(n) or cells[n] for n in form.program.inputs] + ["out"] * bool(results)
+    body = [row for a in form.turns for row in ("double turn[2];", f"sin_cos({cells[a]}, turn);")]
+    call = f"{name}({', '.join(arguments)});"
+    body += [f"return {call}"] if status is not None else [call, "return 0;"]
+    parameters = re.findall(r"(\w+)(?:\[\])?[,)]", head.partition("(")[2])
+    unused = [one for one in parameters if not re.search(rf"\b{one}\b", "".join(body))]
+    rows = [*(f"(void){one};" for one in unused), *body]
+    through = "\n".join([f"{head} {{", *(f"  {row}" for row in rows), "}"]) + "\n"
+    return [static_function(name, form.program, form.program.inputs, results, status), through]
 
 
 def _body(program: Program) -> list[str]:

@@ -2,11 +2,10 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from ....compiler.languages.c.functions import static_function
+from ....compiler.languages.c.functions import called_through
 from ....compiler.languages.c.helpers import HELPERS, PRAGMAS
 from ....compiler.languages.c.language import quoted, sine_and_cosine, tables_text
 from ....compiler.languages.c.steps import RUNGE_KUTTA
-from ....compiler.languages.lifted import lifted
 from ....compiler.languages.shared import comment, with_helpers
 from ....compiler.program import Program
 from ....loads.load import Load, OverY, TableOverTheta
@@ -79,22 +78,10 @@ def _functions(table: Variables, made: Programs) -> list[str]:
 def _function(
     name: str, program: Program, place: Mapping[str, int], count: int, status: int | None, extra: str = ""
 ) -> list[str]:
-    form = lifted(program)
-    words = {part: f"turn[{k}]" for pair in form.turns.values() for k, part in enumerate(pair)}
-    words |= {extra: extra} if extra else {}
-    arguments = [words.get(n) or f"v[{place[n]}]" for n in form.program.inputs]
-    body = [f"double turn[2];\n  sin_cos(v[{place['theta']}], turn);"] if form.turns else []
-    unused = [extra] if extra and extra not in arguments else []
-    unused += ["v"] if not form.turns and not any(each.startswith("v[") for each in arguments) else []
-    unused += [] if count else ["out"]
-    body += [f"(void){each};" for each in unused]
-    call = f"{name}({', '.join([*arguments, *(['out'] if count else [])])});"
-    body += [f"return {call}"] if status is not None else [call, "return 0;"]
-    lines, more = "\n  ".join(body), f"double {extra}, " if extra else ""
-    return [
-        static_function(name, form.program, form.program.inputs, count, status),
-        f"static int eval_{name}(const double v[], {more}double out[]) {{\n  {lines}\n}}\n",
-    ]
+    cells = {n: f"v[{k}]" for n, k in place.items()} | ({extra: extra} if extra else {})
+    more = f"double {extra}, " if extra else ""
+    head = f"static int eval_{name}(const double v[], {more}double out[])"
+    return called_through(name, program, head, cells, count, status)
 
 
 def _sizes(table: Variables, made: Programs, token: str) -> list[str]:
