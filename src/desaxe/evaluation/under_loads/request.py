@@ -84,10 +84,6 @@ class LoadInputs(NamedTuple):
         needed = [one.removeprefix(by_name) for one in self.functions if one.startswith(by_name)]
         return {name: value, **{by_name + p: load.total(by, p, motion) for p in needed}}
 
-    def names(self) -> set[str]:
-        """The names of all inputs that loads give."""
-        return {*self.tables(), *self.functions}
-
 
 class LoadedRequest(NamedTuple):
     """A request under loads, its inputs that come from the caller, and those that follow from the loads."""
