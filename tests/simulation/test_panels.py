@@ -138,3 +138,24 @@ def test_a_function_that_jumps_next_to_an_end_of_a_panel(inertia):
     work += rest * np.where(half_turns % 2.0 == 0.0, 1.0, 0.2) - 0.5 * np.pi
     energy = 0.5 * np.expand_dims(inertia, -1) * omega**2 if np.ndim(inertia) else 0.5 * inertia * omega**2
     assert np.abs(energy - work).max() < 2e-7 * work.max()
+
+
+KLOSS = dx.kloss("40 N m", 0.15, "1500 rpm", gear=12)
+FORMS = {
+    "number": (2.0, lambda t, theta, omega: 2.0),
+    "kloss": (KLOSS, lambda t, theta, omega: KLOSS.both(omega, KLOSS.numbers)[0]),
+}
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.15])
+@pytest.mark.parametrize("name", FORMS)
+def test_the_compiled_law_is_that_of_functions(name, mu):
+    """A closed form of the torque against a function, with which NumPy evaluates the law."""
+    machine = {"AB": 0.04, "BC": 0.064, "ec": 0.01, "m_rod": 0.5, "m_slider": 0.8, "I_crank": 0.01}
+    call = {**machine, "g_Y": -9.81, "mu": mu, "t_end": 0.3, "F_X": 5.0, "times": np.linspace(0.0, 0.3, 31)}
+    force = dx.over_theta(["0 deg", "90 deg", "180 deg", "270 deg"], [-5.0, 3.0, 8.0, -2.0])
+    closed, function = (dx.simulate(torque=torque, F_Y=force, **call) for torque in FORMS[name])
+    assert [event.kind for event in closed["events"]] == [event.kind for event in function["events"]]
+    for key in ("theta", "omega", "alpha", "work"):
+        size = np.abs(function[key]).max()
+        np.testing.assert_allclose(closed[key], function[key], rtol=0, atol=1e-8 * size)

@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .law import Law, Rates
+from ..compiler.llvm.loops import address
+from .law import Guide, Law, Rates
 from .loops import newton, state
 from .loops.compiled import panels as compiled_panels
 from .panel import ENDS, INTEGRAL, NODES, PLACES, RUNNING, SERIES, Panel
@@ -36,10 +37,9 @@ class Collocation:
         self.limits = limits
         self.rows, self.matrix = np.empty((newton.ROWS, NODES)), np.empty((2 * NODES, 2 * NODES))
         self.heads, self.records = np.empty((most + 1, 6)), np.empty((most + 1, 3, NODES + 1))
-        self.rates = np.empty((most + 1, 4, NODES))
+        self.rates = np.empty((most + 1, 7, NODES))
         self.error: BaseException | None = None
         self.stops = False
-        self._last: Rates | None = None  # by the function that answers
 
     def advance(
         self, law: Law, t: float, y: Array, wish: float, top: float, before: Panel | None, most: int
@@ -83,8 +83,8 @@ class Collocation:
         t_end = self.limits.t_end
         stop = t_end if start + h >= t_end * (1.0 - 1e-15) else start + h
         y, series = self.heads[k, 3:].copy(), self.records[k].copy()
-        q, v, work, omega = self.rates[k].copy()
-        rates = self._last if law.rubs else Rates(q, v, work, omega, None)
+        q, v, work, omega, *guide = self.rates[k].copy()
+        rates = Rates(q, v, work, omega, Guide(*guide) if law.rubs else None)
         return Panel(law, start, h, y, series, stop, error, rates)
 
     # ---- the law ------------------------------------------------------------------------------
@@ -93,16 +93,22 @@ class Collocation:
         """The numbers of a law, the packed inputs of its kernel, and what must live during a call."""
         numbers, arc = np.zeros(state.NUMBERS), law.model.coordinate
         numbers[state.HALF : state.TORQUE] = arc.half, arc.first, arc.last
-        torque, force = law.drive.torque.closed_form, law.drive.F_Y.closed_form
+        forms = [curve.closed_form for curve in (law.drive.torque, law.drive.F_Y, law.drive.F_X)]
         numbers[state.RUBS] = law.rubs
         answer = _ANSWER(self._answer(law))
         numbers[state.ANSWER] = _address(answer)
         data = np.zeros(1)
-        if not law.rubs and torque is not None and force is not None:
+        if None not in forms:
             kernel, data = law.model.kernel
             numbers[state.KERNEL] = kernel.code.address
-            for first, form in ((state.TORQUE, torque), (state.FORCE, force)):
-                numbers[first : first + len(form)] = form
+            for first, form in zip((state.TORQUE, state.FORCE, state.SIDEWAYS), forms, strict=True):
+                numbers[first : first + len(form or ())] = form
+            if law.rubs:
+                guide, inputs = law.model.guide_kernel
+                numbers[state.CONTACT : state.NUMBERS] = (
+                    guide.code.address, address(inputs), law.model.mu * law.side * law.direction,
+                    law.pressed, law.model.branch,
+                )  # fmt: skip
         return numbers, data, answer
 
     def _answer(self, law: Law) -> Callable[[int, int, int], int]:
@@ -126,10 +132,12 @@ class Collocation:
 
     def _fill(self, law: Law, q: Array, v: Array, slopes: bool) -> None:
         rows, here = self.rows, law.here(self.rows[newton.TIME], q, v)
-        rates = self._last = here.rates
+        rates = here.rates
         rows[newton.ANGLE], rows[newton.SLOPE], rows[newton.SPEED] = here.theta, here.slope, here.omega
         rows[newton.RATE_Q], rows[newton.RATE_V], rows[newton.RATE_W] = rates[:3]
         rows[newton.CURVED] = rates.v / (here.root * here.slope)
+        if rates.guide is not None:
+            rows[newton.NORMAL : newton.ROWS] = np.broadcast_arrays(*rates.guide)
         if slopes:
             jacobian = law.jacobian(here, q)
             for k, row in enumerate((newton.Q_BY_Q, newton.Q_BY_V, newton.V_BY_Q, newton.V_BY_V)):

@@ -281,10 +281,9 @@ def _knots(panel: Panel, model: Model) -> Iterator[float]:
 
 def _kinks(panel: Panel) -> Iterator[Passage]:
     """The first event at which the normal force changes sign or the friction jams."""
-    assert panel.rates is not None
-    assert panel.rates.guide is not None
-    guide, pressed = panel.rates.guide, panel.law.pressed
-    normal = SeriesOnPanel(SERIES @ (pressed * guide.normal_free))
+    guide = panel.rates and panel.rates.guide
+    assert guide is not None
+    normal = SeriesOnPanel(SERIES @ guide.normal)
     values = AT_SAMPLES[:, :NODES] @ normal.series
     lost = np.flatnonzero(values[1:] < -float(np.max(guide.noise)))  # at the start its sign is rounding
     if lost.size:
@@ -293,7 +292,7 @@ def _kinks(panel: Panel) -> Iterator[Passage]:
         part = normal.root(float(parts[before]), float(parts[before + 1])) if passed else float(parts[before])
         yield part, LOST, -1, 0.0
     for side in (1.0, -1.0):
-        series = SERIES @ (side * pressed * guide.wedge + np.zeros(NODES))
+        series = SERIES @ (side * guide.wedge)
         series[0] -= JAMS_AT
         beyond = SeriesOnPanel(series).roots()
         if beyond and beyond[0] > 0.0:

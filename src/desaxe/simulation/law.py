@@ -75,6 +75,14 @@ class Contact(NamedTuple):
         return (self.solutions == 1) & (self.alpha * direction > 0.0)
 
 
+class Guide(NamedTuple):
+    """The guide where it rubs: normal force without friction and K, on the side that is held; rounding."""
+
+    normal: Array
+    wedge: Array
+    noise: Array
+
+
 class Rates(NamedTuple):
     """The rates of q, v and W at instants, the speed, and the guide where it rubs."""
 
@@ -82,7 +90,7 @@ class Rates(NamedTuple):
     v: Array
     work: Array
     omega: Array
-    guide: Contact | None
+    guide: Guide | None
 
 
 class Here(NamedTuple):
@@ -98,14 +106,15 @@ class Here(NamedTuple):
     force: Any
     push: Any
     guide: Contact | None
+    pressed: float
 
     @property
     def rates(self) -> Rates:
         """The rates of the state."""
-        speed = self.omega / self.slope
-        return Rates(
-            speed, (self.push - self.still.weight) / self.root, self.push * self.omega, self.omega, self.guide
-        )
+        speed, rate = self.omega / self.slope, (self.push - self.still.weight) / self.root
+        guide, pressed = self.guide, self.pressed
+        held = guide and Guide(pressed * guide.normal_free, pressed * guide.wedge, guide.noise)
+        return Rates(speed, rate, self.push * self.omega, self.omega, held)
 
 
 class Law:
@@ -142,7 +151,7 @@ class Law:
         if self.rubs:
             guide = self.guide(t, theta, omega, still, push)
             push = push - guide.torque(self.pressed)
-        return Here(t, theta, slope, still, root, omega, torque, force, push, guide)
+        return Here(t, theta, slope, still, root, omega, torque, force, push, guide, self.pressed)
 
     def rates(self, t: Any, q: Any, v: Any) -> Rates:
         """The rates at instants."""

@@ -108,6 +108,12 @@ class Model(SliderDesign):
         kernel = DesignFamily(form_of(self.values), fixed_zeros(self.values)).kernel()
         return kernel, packed(kernel, {"branch": float(self.branch), **self.values}, 1)[0]
 
+    @computed_once
+    def guide_kernel(self) -> tuple[CompiledKernel, Array]:
+        """The kernel of the contact at the guide for the compiled loops, and its packed inputs."""
+        kernel = DesignFamily(form_of(self.values), fixed_zeros(self.values)).guide()
+        return kernel, packed(kernel, {"branch": float(self.branch), **self.values}, 1)[0]
+
     def still(self, theta: Any) -> Still:
         """Inertia, gravity's torque and Y' at angles, with their slopes."""
         return Still(*self._values(STILL, theta=theta))

@@ -4,7 +4,8 @@ clock    instant, suggested length, end of the motion, largest error of an angle
 kinks    rows of angles at which the motion is cut, and the periods in which they repeat, or inf
 knots    speeds at which it is cut
 heads    rows of panels: start, length, error, q, v and W at the start
-records  series of panels; rates of q, v and W, and the speed, at their nodes
+records  series of panels; at their nodes the rates of q, v and W, the speed, and under friction the normal
+         force, its wedging and its rounding
 """
 
 from __future__ import annotations
@@ -19,17 +20,19 @@ from .newton import (
     CURVED,
     DEVIATES,
     ENDS,
+    NORMAL,
     RATE_Q,
     RATE_V,
     SPEED,
     STOP,
     TAIL,
     TIME,
+    WEDGE,
     law_at,
     newton,
     product,
-)  # fmt: skip
-from .state import FIRST, FUNCTION, HALF, LAST, RUBS, TORQUE
+)
+from .state import FIRST, FUNCTION, HALF, KERNEL, LAST, RUBS, TORQUE
 
 if TYPE_CHECKING:
     from typing import Any
@@ -43,6 +46,7 @@ GROWTH = 2.0  # from panel to panel
 LEAST_H = 1e-6  # of the motion: no panel is shortened to less to tell a limit angle
 MOST = 1000.0 * 2.0 * pi  # rad in one panel
 NEAR = 1e-9  # rad: an angle that a stretch starts from is not reached at once
+STEADY = 0.9  # of the wedging of friction: beyond, it may jam
 MARGIN = 1e-7  # of a speed: so near to a knot it may be passed
 
 
@@ -133,9 +137,22 @@ def reaches(low: float, high: float, angle: float, every: float) -> bool:
     return low <= angle <= high
 
 
+def friction_may_change(law: Any, rows: Any) -> bool:
+    """True where the normal force may change its sign in a panel, or the friction may jam."""
+    if law[KERNEL] == 0.0:
+        return True
+    low, high, least, most = inf, -inf, inf, -inf
+    for i in range(16):
+        low, high = min(low, rows[NORMAL, i]), max(high, rows[NORMAL, i])
+        least, most = min(least, rows[WEDGE, i]), max(most, rows[WEDGE, i])
+    wide = 0.2 * (most - least)
+    safe = low > 0.2 * (high - low) and most + wide < STEADY and least - wide > -STEADY
+    return not safe
+
+
 def may_cut(y: Any, end: Any, law: Any, kinks: Any, knots: Any, rows: Any, series: Any) -> bool:
     """True where a kink, a knot, a limit angle or a standstill may lie in a panel."""
-    if law[RUBS] > 0.0 or end[1] * y[1] <= 0.0:
+    if (law[RUBS] > 0.0 and friction_may_change(law, rows)) or end[1] * y[1] <= 0.0:
         return True
     rest, mean = 0.0, y[1] + series[1, 0]
     for j in range(1, 17):
@@ -258,6 +275,8 @@ def advance(
             for k in range(3):
                 rates[made, k, i] = rows[RATE_Q + k, i]
             rates[made, 3, i] = rows[SPEED, i]
+            for k in range(3):
+                rates[made, 4 + k, i] = rows[NORMAL + k, i]
         end: Any = empty(3)
         for k in range(3):
             end[k] = value(series[k], y[k], 1.0)

@@ -1,7 +1,7 @@
 """The loops over panels and designs as machine code, and the kernel of a family of designs that they call."""
 
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...compiler.llvm.loops import CompiledLoops
 from ...mechanism.program import Variant
-from ...runtime.executor import CompiledKernel, kernel_for
+from ...runtime.executor import CompiledKernel, compiled_kernel, kernel_for
 from ...runtime.kernels import KernelKey
 from ...support.interrupts import finished
 from .advance import advance
@@ -20,6 +20,7 @@ NAMES = (  # see `state`
     *("M_eff", "M_eff_wrt_theta", "T_in", "T_in_wrt_theta", "Y_wrt_theta", "Y_wrt_theta_theta"),
     "potential_energy",
 )
+GUIDE = ("N_C", "N_C_wrt_alpha", "N_C_wrt_omega0", "phi")
 UNLOADED = ("omega", "alpha", "mu", "F_X", "F_Y")
 _PANELS = (
     *("f64[1]", "f64[1]", "f64[1]", "f64[2]", "f64[1]", "f64[1]", "f64[1]", "f64[2]", "f64[2]"),
@@ -41,6 +42,18 @@ class DesignFamily(NamedTuple):
         """The kernel of the quantities at angles; all other inputs are numbers."""
         fixed = dict(self.fixed) | dict.fromkeys(UNLOADED, 0.0)
         return kernel_for(KernelKey(NAMES, self.form, tuple(fixed.items()), (("theta", 0),), 1))
+
+    def guide(self) -> CompiledKernel:
+        """The kernel of the contact at the guide, over angles, speeds and forces, which are not folded."""
+        fixed = {n: v for n, v in self.fixed if n not in UNLOADED} | {"alpha": 0.0, "mu": 0.0}
+        axes = tuple((name, 0) for name in ("F_X", "F_Y", "omega", "theta"))
+        key = KernelKey(GUIDE, self.form, tuple(fixed.items()), axes, 1)
+        return _guide(key)
+
+
+@lru_cache(maxsize=64)
+def _guide(key: KernelKey) -> CompiledKernel:
+    return compiled_kernel(key, ("theta", "omega", "F_X", "F_Y"))
 
 
 def packed(kernel: CompiledKernel, inputs: Mapping[str, Any], size: int) -> Array:

@@ -14,13 +14,16 @@ from __future__ import annotations
 from math import cos, inf, nan, pi, sin, sqrt
 from typing import TYPE_CHECKING
 
-from numpy import empty, int64
+from numpy import empty, int64, zeros
 
-from ...compiler.llvm.loops import apart, call
+from ...compiler.llvm.loops import address, apart, call
 from .state import (
     ANSWER,
     BEND,
     CONSTANT,
+    CONTACT,
+    CONTACT_DATA,
+    DRAG,
     EDGE,
     FIRST,
     FORCE,
@@ -33,23 +36,25 @@ from .state import (
     KERNEL,
     KLOSS,
     LAST,
+    LEANS,
     OUTPUTS,
     OVER_OMEGA,
     OVER_THETA,
+    PRESSED,
     RUBS,
+    SIDEWAYS,
     TORQUE,
     TRAVEL,
     quantities,
     reduced,
-)  # fmt: skip
+)
 
 if TYPE_CHECKING:
     from typing import Any
 
 TIME, ANGLE, SPEED, TURNED = range(OUTPUTS, OUTPUTS + 4)  # as a compiled torque takes them
-SLOPE, RATE_Q, RATE_V, RATE_W, Q_BY_Q, Q_BY_V, V_BY_Q, V_BY_V, CURVED, BY_THETA, BY_OMEGA, ROWS = range(
-    OUTPUTS + 4, OUTPUTS + 16
-)
+SLOPE, RATE_Q, RATE_V, RATE_W, Q_BY_Q, Q_BY_V, V_BY_Q, V_BY_V, CURVED = range(OUTPUTS + 4, OUTPUTS + 13)
+BY_THETA, BY_OMEGA, NORMAL, WEDGE, UNSURE, ROWS = range(OUTPUTS + 13, OUTPUTS + 19)
 RUNNING, SERIES, TAILS, ENDS = 1, 17, 34, 36  # rows of the table
 NONE, STOP = 1, 2  # the law has no value; an exception ends the motion
 ITERATIONS = 14
@@ -58,6 +63,7 @@ BLUR = 4e-16  # over cos(q)^2: the rounding of the rates next to a limit angle
 ROUNDING = 4e-15  # of the size of a coordinate
 DEVIATES = 30.0  # tolerances: by so much a rate differs where nodes have missed a jump
 TAIL = 30.0  # tolerances: the last terms of the rates, over the panel; its inside is far more exact
+NOISE = 1e-12  # of the terms of the normal force: below it, its sign is rounding
 STEP = 1e-7  # of an angle or a speed: a difference has seven digits
 
 
@@ -133,23 +139,65 @@ def law_at(state: Any, law: Any, data: Any, rows: Any, slopes: Any) -> int:
         return call(int64(law[ANSWER]), state, rows, slopes)
     for i in range(16):
         rows[SPEED, i] = state[16 + i] / (sqrt(rows[INERTIA, i]) if rows[INERTIA, i] >= 0.0 else nan)
+    guide: Any = empty((4, 16))
     code = torques(law, rows, slopes)
+    if law[RUBS] > 0.0 and code == 0 and guide_at(angles, law, rows, guide) != 0:
+        return call(int64(law[ANSWER]), state, rows, slopes)
     if code == 0:
-        fill_rates(state, law, rows)
+        fill_rates(state, law, rows, guide)
     return code
 
 
-def fill_rates(state: Any, law: Any, rows: Any) -> None:
+def guide_at(angles: Any, law: Any, rows: Any, guide: Any) -> int:
+    """The normal force without friction at alpha = 0, its derivatives by alpha and omega, and phi: rows."""
+    words: Any = zeros(20, int64)
+    forces: Any = empty((2, 16))
+    for i in range(16):
+        theta, omega = rows[ANGLE, i], rows[SPEED, i]
+        forces[0, i] = piece(law[SIDEWAYS:RUBS], theta, omega)[0]
+        forces[1, i] = piece(law[FORCE:SIDEWAYS], theta, omega)[0]
+    words[0], words[1] = address(angles), address(rows[SPEED])
+    words[2], words[3], words[8] = address(forces[0]), address(forces[1]), 16
+    for k in range(4):
+        words[4 + k] = address(guide[k])
+    for k in range(8):
+        words[9 + k] = 8
+    return call(int64(law[CONTACT]), words, words[8:], words[9:], int64(law[CONTACT_DATA]))
+
+
+def rub(i: Any, push: float, law: Any, rows: Any, guide: Any) -> Any:
+    """The torque of friction at a node, as a share of the normal force without friction, and that force."""
+    inertia, omega, by_alpha = rows[INERTIA, i], rows[SPEED, i], guide[1, i]
+    bent = 0.5 * rows[INERTIA_SLOPE, i] * omega * omega
+    moved = by_alpha * (push - rows[GRAVITY, i] - bent) / inertia
+    free = guide[0, i] + moved
+    rows[UNSURE, i] = NOISE * (abs(guide[0, i]) + abs(moved))
+    arm = law[DRAG] * rows[TRAVEL, i]
+    lean = law[LEANS] * sin(guide[3, i]) / cos(guide[3, i])
+    wedge = lean * law[DRAG] - arm * by_alpha / inertia
+    rows[NORMAL, i], rows[WEDGE, i] = law[PRESSED] * free, law[PRESSED] * wedge
+    return arm * law[PRESSED] / (1.0 - law[PRESSED] * wedge), free
+
+
+def fill_rates(state: Any, law: Any, rows: Any, guide: Any) -> None:
     """The rates at the nodes and their derivatives, from inertia, torque and force."""
     half = law[HALF]
     for i in range(16):
         slope, inertia, travel, omega = rows[SLOPE, i], rows[INERTIA, i], rows[TRAVEL, i], rows[SPEED, i]
         root = sqrt(inertia) if inertia >= 0.0 else nan
-        pushed, pushed_theta, pushed_omega = piece(law[FORCE:RUBS], rows[ANGLE, i], omega)
+        pushed, pushed_theta, pushed_omega = piece(law[FORCE:SIDEWAYS], rows[ANGLE, i], omega)
         push = rows[TURNED, i] + pushed * travel
+        share, by_alpha = 0.0, 0.0
+        if law[RUBS] > 0.0:
+            share, free = rub(i, push, law, rows, guide)
+            push -= share * free
+            by_alpha = guide[1, i] / inertia
         speed, left = omega / slope, push - rows[GRAVITY, i]
         by_theta = rows[BY_THETA, i] + pushed_theta * travel + pushed * rows[BEND, i] - rows[GRAVITY_SLOPE, i]
         by_omega = rows[BY_OMEGA, i] + pushed_omega * travel
+        if law[RUBS] > 0.0:  # of its torque by alpha and omega alone: good enough for an iteration
+            by_theta *= 1.0 - share * by_alpha
+            by_omega -= share * (guide[2, i] + (by_omega - rows[INERTIA_SLOPE, i] * omega) * by_alpha)
         steeper = 0.5 * rows[INERTIA_SLOPE, i] / inertia
         rows[RATE_Q, i], rows[RATE_V, i], rows[RATE_W, i] = speed, left / root, push * omega
         rows[CURVED, i] = left / root / (root * slope)

@@ -1,10 +1,12 @@
 """The state of a motion in plain loops, which are compiled (`compiled`): q, v and W of `..law`.
 
 law      numbers: addresses of the executor's kernel (0 where the law has no closed form) and of the function
-         that answers otherwise, half of the arc (see `coordinate`), limit angles; TORQUE and FORCE: kind and
-         coefficients of the piece (see `closed_form` of a curve), of which FUNCTION has the address of a
-         compiled function of t, theta and omega; 1 where friction may change at any time; of one of many
-         designs also theta0, omega_start and an energy that the loads suggest
+         that answers otherwise, half of the arc (see `coordinate`), limit angles; TORQUE, FORCE and
+         SIDEWAYS (of F_X): kind and coefficients of the piece (see `closed_form` of a curve), of which
+         FUNCTION has the address of a compiled function of t, theta and omega; under friction 1, addresses of
+         the kernel of the guide and its packed inputs, mu times the signs of Y' and of the direction, the
+         sign of the normal force, the branch; of one of many designs also theta0, omega_start and an energy
+         that the loads suggest
 data     the packed inputs of the kernel
 """
 
@@ -20,7 +22,8 @@ from ...compiler.llvm.loops import address, call
 if TYPE_CHECKING:
     from typing import Any
 
-KERNEL, ANSWER, HALF, FIRST, LAST, TORQUE, FORCE, RUBS, NUMBERS = 0, 1, 2, 3, 4, 5, 12, 19, 20
+KERNEL, ANSWER, HALF, FIRST, LAST, TORQUE, FORCE, SIDEWAYS = 0, 1, 2, 3, 4, 5, 12, 19
+RUBS, CONTACT, CONTACT_DATA, DRAG, PRESSED, LEANS, NUMBERS = 26, 27, 28, 29, 30, 31, 32
 THETA0, OMEGA_START, ENERGY = NUMBERS, NUMBERS + 1, NUMBERS + 2
 CONSTANT, OVER_THETA, OVER_OMEGA, KLOSS, FUNCTION = 0.0, 1.0, 2.0, 3.0, 4.0  # kinds of pieces
 INERTIA, INERTIA_SLOPE, GRAVITY, GRAVITY_SLOPE, TRAVEL, BEND, POTENTIAL = range(7)  # what the kernel gives
