@@ -166,6 +166,46 @@ def motions() -> Ways:
     }
 
 
+CRANK = {"AB": 0.04, "BC": 0.064, "ec": 0.01, "m_rod": 0.5, "m_slider": 0.8, "I_crank": 0.01}
+
+
+def _angle(count: int = 0, **call: Any) -> Way:
+    """Simulate a crank, or many equal ones: the angle at the end."""
+    many = {**CRANK, "m_slider": np.full(count, CRANK["m_slider"])} if count else CRANK
+    run = partial(dx.simulate, threads=1, **{"t_end": T_END, **call, **many})
+    return Way(lambda: np.ravel(run()["theta"])[-1], count or 1)
+
+
+@row
+def motors() -> Ways:
+    """The angle after 1 s on a motor, as a table and as a function."""
+    table = dx.over_omega([0.0, 400.0], [3.0, -5.0], kind="linear")
+
+    def function(t: float, theta: float, omega: float) -> float:
+        """Give the torque of the motor at a speed."""
+        return 3.0 - 0.02 * omega
+
+    return {
+        "over_omega": _angle(torque=table),
+        "four designs": _angle(4, torque=table),
+        "a Python function": _angle(torque=function),
+        "200 designs, compiled": _angle(200, torque=function),
+    }
+
+
+@row
+def stiff_motors() -> Ways:
+    """The angle after 0.1 s on a stiff induction motor (kloss)."""
+    kloss = dx.kloss("40 N m", 0.15, "1500 rpm", gear=12)
+    return {"alone": _angle(torque=kloss, t_end=0.1), "four designs": _angle(4, torque=kloss, t_end=0.1)}
+
+
+@row
+def rubbing() -> Ways:
+    """The angle after 1 s under a constant torque with guide friction."""
+    return {"alone": _angle(torque=2.0, mu=0.1), "four designs": _angle(4, torque=2.0, mu=0.1)}
+
+
 @row
 def derivatives() -> Ways:
     """Derivatives of whole motions with respect to five parameters, beside the motions alone."""

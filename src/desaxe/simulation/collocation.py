@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiler.llvm.loops import address
+from .drive import FunctionCurve
 from .law import Guide, Law, Rates
 from .loops import newton, state
 from .loops.compiled import panels as compiled_panels
@@ -16,7 +17,7 @@ from .panel import ENDS, INTEGRAL, NODES, PLACES, RUNNING, SERIES, Panel
 Array = NDArray[np.float64]
 BRIEF = 64  # panels of a call, which neither an interrupt nor a deadline stops
 TABLE = np.vstack([PLACES[None], RUNNING, INTEGRAL, SERIES[-2:], ENDS])
-_ANSWER = CFUNCTYPE(c_int64, c_void_p, c_void_p, c_int64)
+_CALLED = CFUNCTYPE(c_int64, c_int64, c_int64, c_int64)
 
 
 class PanelLimits(NamedTuple):
@@ -93,10 +94,12 @@ class Collocation:
         """The numbers of a law, the packed inputs of its kernel, and what must live during a call."""
         numbers, arc = np.zeros(state.NUMBERS), law.model.coordinate
         numbers[state.HALF : state.TORQUE] = arc.half, arc.first, arc.last
-        forms = [curve.closed_form for curve in (law.drive.torque, law.drive.F_Y, law.drive.F_X)]
-        numbers[state.RUBS] = law.rubs
-        answer = _ANSWER(self._answer(law))
-        numbers[state.ANSWER] = _address(answer)
+        torque, *forces = law.drive.torque, law.drive.F_Y, law.drive.F_X
+        forms, keeper = [curve.closed_form for curve in (torque, *forces)], [self._guarded(self._answer(law))]
+        if isinstance(torque, FunctionCurve) and not torque.follows_the_slider:
+            keeper.append(self._guarded(_torques(torque)))
+            forms[0] = state.FUNCTION, _address(keeper[1])
+        numbers[state.RUBS], numbers[state.ANSWER] = law.rubs, _address(keeper[0])
         data = np.zeros(1)
         if None not in forms:
             kernel, data = law.model.kernel
@@ -109,16 +112,16 @@ class Collocation:
                     guide.code.address, address(inputs), law.model.mu * law.side * law.direction,
                     law.pressed, law.model.branch,
                 )  # fmt: skip
-        return numbers, data, answer
+        return numbers, data, keeper
 
-    def _answer(self, law: Law) -> Callable[[int, int, int], int]:
-        """The function that the loops call where the law has no closed form."""
+    def _guarded(self, work: Callable[[int, int, int], None]) -> Any:
+        """A function for the loops; they go on after an error of a load, and stop after all others."""
 
-        def answer(state_at: int, rows_at: int, slopes: int) -> int:
+        def guarded(first: int, second: int, third: int) -> int:
+            if self.stops:
+                return newton.STOP
             try:
-                memory: Any = (c_double * (2 * NODES)).from_address(state_at)
-                q, v = np.frombuffer(memory).reshape(2, NODES)
-                self._fill(law, q, v, bool(slopes))
+                work(first, second, third)
             except (ValueError, ArithmeticError) as raised:  # a load has no value: the panel may be shorter
                 self.error = raised
                 return newton.NONE
@@ -127,6 +130,15 @@ class Collocation:
                 return newton.STOP
             self.error = None
             return 0
+
+        return _CALLED(guarded)
+
+    def _answer(self, law: Law) -> Callable[[int, int, int], None]:
+        """The function that the loops call where the law has no closed form: of state, rows, slopes."""
+
+        def answer(state_at: int, _: int, slopes: int) -> None:
+            q, v = _memory(state_at, 2 * NODES).reshape(2, NODES)
+            self._fill(law, q, v, bool(slopes))
 
         return answer
 
@@ -142,6 +154,21 @@ class Collocation:
             jacobian = law.jacobian(here, q)
             for k, row in enumerate((newton.Q_BY_Q, newton.Q_BY_V, newton.V_BY_Q, newton.V_BY_V)):
                 rows[row] = jacobian[k]
+
+
+def _torques(curve: FunctionCurve) -> Callable[[int, int, int], None]:
+    """A user's torque as the loops call it: rows of t, theta and omega, and one to fill in."""
+
+    def torques(rows_at: int, apart: int, count: int) -> None:
+        rows = _memory(rows_at, 3 * apart + count)
+        rows[3 * apart :] = curve.at(*(rows[k * apart : k * apart + count] for k in range(3)))
+
+    return torques
+
+
+def _memory(start: int, size: int) -> Array:
+    memory: Any = (c_double * size).from_address(start)
+    return np.frombuffer(memory)
 
 
 def _address(function: Any) -> int:

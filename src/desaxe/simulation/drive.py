@@ -280,6 +280,7 @@ class FunctionCurve(Curve):
         self.name, self.function, self.unit, self.deadline = name, by_position(function), unit, deadline
         self.arguments = arguments
         self.depends_on_time = "t" in arguments
+        self.follows_the_slider = not {"Y", "s", "V_C"}.isdisjoint(arguments)
         self.design: SliderDesign | None = None
 
     def stand(self, design: SliderDesign, lengths: tuple[float, ...], branch: int) -> None:
@@ -306,7 +307,7 @@ class FunctionCurve(Curve):
     def columns(self, t: Any, theta: Any, omega: Any) -> dict[str, Any]:
         """The columns of the motion at instants, by name."""
         now = {"t": t, "theta": theta, "omega": omega}
-        if not {"Y", "s", "V_C"}.isdisjoint(self.arguments):
+        if self.follows_the_slider:
             assert self.design is not None
             now["Y"], now["s"], slope = self.design.slider(theta)
             now["V_C"] = slope * omega

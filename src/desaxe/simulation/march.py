@@ -80,7 +80,7 @@ class March:
         self.timed = any(curve.depends_on_time for curve in model.drive)
         self.by_functions = any(isinstance(curve, FunctionCurve) for curve in model.drive)
         limits = PanelLimits(t_end, settings.rtol, SHARP, self.kinks, np.array(model.drive.knots, np.float64))
-        self.collocation = Collocation(limits, 1 if self.timed else BRIEF)
+        self.collocation = Collocation(limits, BRIEF)
 
     def to_the_end(self) -> "March":
         """Run until the end time, or what comes before it."""
@@ -272,19 +272,22 @@ class March:
     def _panels(self, law: Law, most: int) -> list[Panel]:
         """The next panels, of which only the last may be cut; none where the tolerance allows none."""
         before = self.panels[-1] if self.panels and not self.panels[-1].law.rests else None
-        most, wish = 1 if self.timed else most, self.h
         while True:
             self.deadline.check()
-            panels, self.h = self.collocation.advance(law, self.t, self.y, wish, self.top, before, most)
-            shorter = self._missed(panels[0]) if self.timed and panels else None
-            if shorter is None and self.by_functions and panels:
-                before_jump = self._before_jump(panels)
-                if before_jump:
-                    return panels[:before_jump]
-                shorter = None if before_jump is None else 0.5 * panels[0].h
-            if shorter is None:
-                return panels
-            wish = shorter
+            panels, self.h = self.collocation.advance(law, self.t, self.y, self.h, self.top, before, most)
+            good, shorter = self._resolved(panels)
+            self.h = shorter or self.h
+            if good or shorter is None:
+                return panels[:good]
+
+    def _resolved(self, panels: list[Panel]) -> tuple[int, float | None]:
+        """Count the panels before one whose nodes have missed something; a shorter length for that one."""
+        for k, panel in enumerate(panels if self.timed else ()):
+            shorter = self._missed(panel)
+            if shorter is not None:
+                return k, shorter
+        bad = self._before_jump(panels) if self.by_functions and panels else None
+        return (len(panels), None) if bad is None else (bad, 0.5 * panels[bad].h)
 
     def _before_jump(self, panels: list[Panel]) -> int | None:
         """Count the panels before the first with a jump next to an end, unseen by nodes; None without."""

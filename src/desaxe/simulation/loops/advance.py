@@ -23,6 +23,7 @@ from .newton import (
     NORMAL,
     RATE_Q,
     RATE_V,
+    ROWS,
     SPEED,
     STOP,
     TAIL,
@@ -187,16 +188,16 @@ def jumps(
     t: float, h: float, y: Any, scales: Any, law: Any, data: Any, table: Any, rows: Any, series: Any
 ) -> bool:  # fmt: skip
     """True where a function jumps between an end of a panel and the node next to it, which no node sees."""
-    still, end = empty(32), empty(3)
+    still, end, other = empty(32), empty(3), empty((ROWS, 16))
     first, last = product(table[ENDS], rows[RATE_V]), product(table[ENDS + 1], rows[RATE_V])
     for k in range(3):
         end[k] = value(series[k], y[k], 1.0)
-    if motion(t, y, law, data, rows, still) != 0:
+    if motion(t, y, law, data, other, still) != 0:
         return True
-    first -= rows[RATE_V, 0]
-    if motion(t + h, end, law, data, rows, still) != 0:
+    first -= other[RATE_V, 0]
+    if motion(t + h, end, law, data, other, still) != 0:
         return True
-    worst = max(abs(first), abs(last - rows[RATE_V, 0]))
+    worst = max(abs(first), abs(last - other[RATE_V, 0]))
     return bool(h * worst > DEVIATES * TAIL * scales[0] * scales[2])
 
 
