@@ -37,7 +37,7 @@ def basis(x: Array, degree: int) -> Array:
 
 
 def _basis_at(x: float, degree: int) -> list[float]:
-    """The same at one place."""
+    """Legendre polynomials up to a degree at one place from -1 to 1."""
     values = [1.0, x]
     for n in range(1, degree):
         values.append(x * values[n] * ((2 * n + 1) / (n + 1)) - n / (n + 1) * values[n - 1])
