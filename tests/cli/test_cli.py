@@ -364,7 +364,7 @@ def test_doctor(capsys):
     out = capsys.readouterr().out
     assert f"place        {Path(dx.__file__).parent}\n" in out
     assert max(len(line) for line in out.splitlines() if "/" not in line) <= 100
-    for word in ("numba", "llvmlite", "xarray", "folder", "threads", "freshness", "arrays"):
+    for word in ("numba", "llvmlite", "xarray", "threads", "freshness", "arrays"):
         assert f"\n  {word} " in out
     assert out.endswith("desaxe can be used.\n")
 
