@@ -69,3 +69,44 @@ def test_the_report_has_the_figures_of_the_calls(tmp_path):
     assert "| 1 | 110 |" in page
     with pytest.raises(TypeError, match="without tolerances"):
         THREE.report(tmp_path / "other.md", tolerances={"AB": 1e-4})
+
+
+SCENE = """
+[units]
+length = "mm"
+angle = "deg"
+
+[mechanism]
+AB = 45
+BC = 150
+ec = 4
+
+[motion]
+omega0 = "3000 rpm"
+
+[masses]
+m_slider = 0.4
+
+[loads]
+F_Y = -50
+
+[crankshaft]
+phase = [0, 120, 240]
+bank = "30 deg"
+spacing = 90
+"""
+
+
+def test_a_crankshaft_from_a_scene_file(tmp_path):
+    file = tmp_path / "three.toml"
+    file.write_text(SCENE, encoding="utf-8")
+    one = dx.Machine(units="mm, deg", AB=45, BC=150, ec=4, omega0="3000 rpm", m_slider=0.4, F_Y=-50)
+    assert dx.Crankshaft.read(file) == dx.Crankshaft(one, phase=[0, 120, 240], bank=30, spacing=90)
+    for text, message in (
+        (SCENE.partition("[crankshaft]")[0], r"no table \[crankshaft\]"),
+        (SCENE.replace("phase =", "phases ="), "no input 'phases'; did you mean phase"),
+        (SCENE.replace("phase = [0, 120, 240]", ""), "phase is missing"),
+    ):
+        file.write_text(text, encoding="utf-8")
+        with pytest.raises((TypeError, ValueError), match=message):
+            dx.Crankshaft.read(file)

@@ -1,6 +1,7 @@
 """`Crankshaft`: several sliders on one crankshaft, as a machine with every public call."""
 
 from collections.abc import Mapping, Sequence
+from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -9,14 +10,20 @@ from ..crankshaft.sliders import Sliders
 from ..crankshaft.sums import GRAVITY, STATE, ShaftSlider
 from ..mechanism.closed import TURN
 from ..mechanism.inputs import Input
+from ..mechanism.keywords import check_inputs
 from ..mechanism.messages import errors_in, listed, named
 from ..mechanism.quantity_units import UnitSystem, si_unit
 from ..mechanism.read import read, read_array
 from ..runtime.request import MachineSpeed
+from ..support.files import as_path
 from ..support.forks import IMPORTS
+from ..support.toml import read_toml
 from .arguments import in_si
-from .machine import Machine
+from .machine import Machine, checked_inputs, restored
+from .scenes import inputs_of_content
 
+ANGLES = ("phase", "bank", "firing", "spacing", "position", "I_shaft")
+RESULTS = ("outputs", "reduce", "peak", "check", "picture", "steady", "results")  # of a scene
 SAME = 1e-9  # rad: a firing that is at its phase and bank
 
 
@@ -91,6 +98,29 @@ class Crankshaft(Machine):
         sliders = Sliders(members, {n: shared[n] for n in GRAVITY}, inertia, definitions)
         speeds = {n: MachineSpeed(shared[n]) for n in STATE[1:] if shared[n] is not None}
         self._fill({**speeds, "sliders": sliders}, system)
+
+    @classmethod
+    def read(cls, path: str | PathLike[str], *, units: Any = None) -> "Crankshaft":
+        """The crankshaft of a scene file with a table [crankshaft] (extra `scene`).
+
+        The table has phase, bank, firing, spacing or position, I_shaft as they are given here; the other
+        tables are those of one slider. Other results that the file asks for are left out.
+        """
+        with IMPORTS:
+            from ..scenes.reading.read import read as read_scene
+
+        file = as_path("path", path)
+        data = read_toml(file)
+        table = data.pop("crankshaft", None)
+        if not isinstance(table, dict):
+            raise ValueError(f"{file}: there is no table [crankshaft]; Machine.read reads one slider")
+        check_inputs("[crankshaft]", table, ANGLES)
+        if "phase" not in table:
+            raise TypeError(f"{file}: phase is missing in [crankshaft]")
+        design = {key: value for key, value in data.items() if key not in RESULTS}
+        content = read_scene({**design, "outputs": ["stroke"]}, file.parent)
+        inputs, system, made = inputs_of_content(content)
+        return cls(restored(checked_inputs(inputs), system, {}, made), units=units, **table)
 
     def _fill(self, inputs: dict[str, Any], units: UnitSystem) -> "Crankshaft":
         """Fill a new crankshaft."""

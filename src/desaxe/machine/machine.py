@@ -134,7 +134,7 @@ class Machine(Mapping[str, Any]):
         named = {**plain, **inputs}
         with errors_in(system):
             si = {**given, **{key: in_si(system, key, value) for key, value in named.items()}}
-            checked = _checked_inputs(si)
+            checked = checked_inputs(si)
         warn_of_slips(named, system, inputs=checked)
         self._set(checked, system, named, made)
 
@@ -161,7 +161,7 @@ class Machine(Mapping[str, Any]):
     def read(cls, path: str | PathLike[str], *, units: str | Mapping[str, str] | None = None) -> "Machine":
         """The machine of a scene file, with its units (extra `scene`); its crank angles are left out."""
         inputs, own, made = inputs_of_scene(path)
-        return _restored(_checked_inputs(inputs), own if units is None else UnitSystem.read(units), {}, made)
+        return restored(checked_inputs(inputs), own if units is None else UnitSystem.read(units), {}, made)
 
     def replace(self, **inputs: Any) -> "Machine":
         """The machine with other inputs; None takes one away. `units=` changes the units alone."""
@@ -174,10 +174,10 @@ class Machine(Mapping[str, Any]):
         given = {**self.in_units(), **inputs} if system == self.units else inputs
         with errors_in(system):
             new = {key: in_si(system, key, value) for key, value in inputs.items() if value is not None}
-            checked = _checked_inputs({**kept, **new})
+            checked = checked_inputs({**kept, **new})
         loaded = checked if {"BC", "F_X", "F_Y"} & {*inputs} else {}
         warn_of_slips(inputs, system, inputs=loaded)
-        return _restored(checked, system, given, self.definitions)
+        return restored(checked, system, given, self.definitions)
 
     def in_units(self) -> dict[str, Any]:
         """The inputs in the units of the machine: numbers as they were given."""
@@ -324,7 +324,7 @@ class Machine(Mapping[str, Any]):
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restored, (self._inputs, self.units, self._given, self.definitions)
+        return restored, (self._inputs, self.units, self._given, self.definitions)
 
     def __repr__(self) -> str:
         return text_of(self)
@@ -348,7 +348,7 @@ for _name, _maker in MAKERS.items():
     setattr(Machine, _name, _in_its_units(_name, _maker))
 
 
-def _restored(
+def restored(
     inputs: dict[str, Any],
     units: UnitSystem,
     given: Mapping[str, Any],
@@ -360,7 +360,7 @@ def _restored(
     return machine
 
 
-def _checked_inputs(si: Mapping[str, Any]) -> dict[str, Any]:
+def checked_inputs(si: Mapping[str, Any]) -> dict[str, Any]:
     """Inputs in the order of the catalogue, branch last where it is -1; errors name what is wrong."""
     if "theta" in si:
         raise TypeError(

@@ -13,6 +13,7 @@ from ..mechanism.closed import TURN
 from ..mechanism.inputs import INPUTS
 from ..mechanism.own import Definition
 from ..mechanism.quantity_units import UnitSystem
+from ..scenes.content import Content
 from ..scenes.scene import scene
 from ..scenes.schema import SECTIONS, SceneError
 from ..support.version import version
@@ -30,15 +31,19 @@ def inputs_of_scene(
     source: str | PathLike[str] | Mapping[str, Any],
 ) -> tuple[dict[str, Any], UnitSystem, tuple[Definition, ...]]:
     """The inputs of a scene in SI units, without crank angles, its units and its own quantities."""
-    found = scene(source)
+    return inputs_of_content(scene(source).content)
+
+
+def inputs_of_content(content: Content) -> tuple[dict[str, Any], UnitSystem, tuple[Definition, ...]]:
+    """The inputs of a scene that was read, without crank angles, its units and its own quantities."""
     inputs: dict[str, Any] = {
         name: list(value) if isinstance(value, tuple) else value
-        for name, value in found.inputs.items()
+        for name, value in content.inputs.items()
         if name != "theta"
     }
-    if found.content.branch == -1:
+    if content.branch == -1:
         inputs["branch"] = -1
-    return inputs, found.content.units, found.content.definitions
+    return inputs, content.units, content.definitions
 
 
 def scene_of(machine: Any, outputs: Any, more: Mapping[str, Any]) -> Any:
