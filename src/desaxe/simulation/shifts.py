@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..loads.angles import shift
 from ..mechanism.names import LENGTHS, sensitivity
 from .drive import Curve, PositionCurve, SumCurve
-from .events import V
+from .events import Q, V
 from .law import Law, state_of
 from .march import March
 from .result import Event
@@ -34,18 +34,21 @@ class Shifts:
         self.notes: list[str] = []
         self.of_centres: dict[str, Array] = {}
         ends = np.array([*(panel.y for panel in run.panels), run.y]).T
-        self.fastest = float(np.nanmax(np.abs(state_of(self.model, *ends[: V + 1]).omega)))
+        theta, omega = state_of(self.model, *ends[: V + 1])
+        self.fastest = float(np.nanmax(np.abs(omega)))
+        starts = [panel.start for panel in run.panels]
+        self.states = dict(zip(starts, zip(theta.tolist(), omega.tolist(), strict=True), strict=False))
 
     # ---- jumps ------------------------------------------------------------------------------
 
-    def jump(self, before: Any, after: Any, theta_p: Array, y: Array) -> Array:
+    def jump(self, before: Any, after: Any, y: Array) -> Array:
         """By how much q_p and v_p (y: before) jump from one piece to the next."""
         none = np.zeros(y.shape)
         if before.law.rests:
             return none  # it breaks away without a jump of alpha, or at an instant of its own
         if after.law.rests:
             return y * [[0.0], [-1.0]]
-        theta, omega = state_of(self.model, *after.y[: V + 1].tolist())
+        theta, omega = self.states[after.start]
         instant = after.start, theta, omega
         if before.law.direction == after.law.direction and not _jumps(before.law, after.law, instant):
             return none  # a load bends, or the guide changes sides, where it does not press
@@ -68,6 +71,7 @@ class Shifts:
                 f"NaN from t = {after.start:.6g} s on, where the friction jumps with several loads"
             )
             return none + nan
+        theta_p = self.tangents.angle(after.y[Q], y)
         times = [share * self.passage(after.start, omega, shifts[c], theta_p) for c, share in shares.items()]
         return np.stack([none[0], root * np.sum(times, axis=0)])
 

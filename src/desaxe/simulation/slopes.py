@@ -150,7 +150,7 @@ class MotionSlopes:
         for row, k in enumerate(piece.tolist()):
             own = self.pieces[k]
             if own.law is not before.law:
-                y = y + self.shifts.jump(before, own, self._angle(own.y[Q], y), y)
+                y = y + self.shifts.jump(before, own, y)
             if own.law.rests and own.stop > own.start:  # it has not only stopped where it started
                 y = y * [[1.0], [0.0]]
             before, begin[row] = own, y
@@ -164,11 +164,6 @@ class MotionSlopes:
         theta, omega = (self.tangents.flags(name) for name in STARTS)
         of_q = (theta - by_theta[2:]) / by_theta[0]
         return np.stack([of_q, (omega - by_omega[0] * of_q - by_omega[2:]) / by_omega[1]])
-
-    def _angle(self, q: float, y: Array) -> Array:
-        """theta_p where q is known and y its derivatives and those of v."""
-        _, by_theta, _ = self.tangents.angles(q)
-        return np.asarray(by_theta[0] * y[0] + by_theta[2:])
 
     # ---- results ---------------------------------------------------------------------------------
 
@@ -185,7 +180,7 @@ class MotionSlopes:
         return list(map(self._of_event, self.run.events, q, y))
 
     def _of_event(self, event: Event, q: float, y: Array) -> Array:
-        theta = self._angle(q, y)
+        theta = self.tangents.angle(q, y)
         if event.kind in ("dead centre", "no inertia"):
             return self.shifts.passage(event.t, event.omega, self.shifts.dead_centre(event), theta)
         if event.kind == "limit" and self.ends_at_limit:

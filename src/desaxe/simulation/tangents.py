@@ -111,6 +111,11 @@ class Tangents:
             rows[1, 2:] = np.multiply.outer(half, cosine)
         return np.asarray(arc.theta(q)), rows[0], rows[1]
 
+    def angle(self, q: float, y: Array) -> Array:
+        """The derivative of the crank angle by the parameters at a fixed time; y: those of q and v."""
+        _, rows, _ = self.angles(q)
+        return np.asarray(rows[0] * y[0] + rows[2:])
+
     def speeds(self, q: Array, v: Array) -> tuple[Array, Array]:
         """The derivatives of angle and speed."""
         theta, by_theta, _ = self.angles(q)
