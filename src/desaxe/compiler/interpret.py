@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
-from .languages.python import SCOPE
+from .languages.python import compile_python
 from .operations import OPERATIONS
-from .program import Program, TableName
+from .program import Line, Program, TableName
 
 
 def run_in_doubles(program: Program, values: Mapping[str, Any]) -> dict[str, Any]:
@@ -23,17 +23,13 @@ def run_in_doubles(program: Program, values: Mapping[str, Any]) -> dict[str, Any
 
 def ieee(op: str, *args: Any) -> Any:
     """Apply one operation with IEEE 754 semantics; a table is its knots and coefficients."""
-    spread = ((a,) if not isinstance(a, tuple) else a for a in args)
-    return _function(op)(*(part for each in spread for part in each))
+    columns = (column for a in args if isinstance(a, tuple) for column in a)
+    return _function(op)(*(a for a in args if not isinstance(a, tuple)), *columns)[0]
 
 
 @cache
-def _function(op: str) -> Callable[..., Any]:
-    operation = OPERATIONS[op]
-    names = "abc"[: operation.arity]
-    pairs = zip(names, operation.signature, strict=False)
-    parameters = (f"{name}_x, {name}_c" if letter == "t" else name for name, letter in pairs)
-    function: Callable[..., Any] = eval(
-        f"lambda {', '.join(parameters)}: {operation.python.format(*names)}", dict(SCOPE)
-    )
-    return function
+def _function(op: str) -> Callable[..., tuple[Any, ...]]:
+    pairs = zip("abc", OPERATIONS[op].signature[:-1], strict=False)
+    args = tuple(TableName(name) if letter == "t" else name for name, letter in pairs)
+    inputs = tuple(a for a in args if isinstance(a, str))
+    return compile_python(Program(inputs, (Line("result", op, args),), ("result",), {}))
