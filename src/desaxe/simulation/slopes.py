@@ -30,7 +30,7 @@ LEAST = 1e-12  # of a column's largest coefficient: a panel with less need not r
 AT_ONCE = 1000  # panels whose matrices are in memory
 HALVINGS = 10  # of a panel of the motion, at most
 WELL_BEFORE = 0.1  # of q: so far from a limit angle the friction has its digits
-SHORT = 0.99  # of the last panel before a limit angle: its nodes keep their digits
+SHORT, LONG = 0.95, 0.99  # of the last panel before a limit angle, and of several: their nodes have digits
 ENDS = ("angle", "standstill", "limit", "no inertia")
 
 
@@ -87,7 +87,7 @@ class MotionSlopes:
         h, new = stop - start, ~np.array([one.law.rests for one in self.pieces])
         local = np.zeros((piece.size, 2, NODES + 1, 2 + len(self.wrt)))
         if self.ends_at_limit:
-            h[-1] *= SHORT
+            h[-1] *= LONG if self.run.model.mu else SHORT
         for _ in range(HALVINGS):
             for rows in np.array_split(np.flatnonzero(new), new.sum() // AT_ONCE + 1):
                 if rows.size:

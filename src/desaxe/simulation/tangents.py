@@ -101,15 +101,19 @@ class Tangents:
     def angles(self, q: Any) -> tuple[Array, Array, Array]:
         """The crank angle, its derivatives, and those of dtheta/dq."""
         arc, rows = self.model.coordinate, np.zeros((2, 2 + len(self.wrt), *np.shape(q)))
-        rows[0, 0] = 1.0
+        rows[0, 0], theta = 1.0, np.asarray(arc.theta(q))
         if arc.half:
-            sine, cosine = np.sin(q), np.cos(q)
+            gap = np.minimum(
+                theta - arc.first, arc.last - theta
+            )  # of the rounded angle, as quantities see it
+            cosine = np.sqrt(np.maximum(gap * (2.0 * arc.half - gap), 0.0)) / arc.half
+            sine = np.copysign(1.0 - gap / arc.half, q)
             first, last = self.of_limits
             middle, half = 0.5 * (first + last), 0.5 * (last - first)
             rows[0, 0], rows[1, 0] = arc.half * cosine, -arc.half * sine
             rows[0, 2:] = np.multiply.outer(half, sine) + middle.reshape(-1, *[1] * np.ndim(q))
             rows[1, 2:] = np.multiply.outer(half, cosine)
-        return np.asarray(arc.theta(q)), rows[0], rows[1]
+        return theta, rows[0], rows[1]
 
     def angle(self, q: float, y: Array) -> Array:
         """The derivative of the crank angle by the parameters at a fixed time; y: those of q and v."""
