@@ -10,7 +10,7 @@ step           the base class of steps of a plan
 points         a step: values of names by one kernel, loads included
 lazy           a plan as Dask arrays
 labels         units and CF attributes
-quality        condition numbers and error bounds
+quality        condition numbers and error bounds, under loads too
 values         values of names from a dict of inputs: the body of `evaluate`
 function       a prepared callable of some inputs
 labelled       `evaluate` of labelled arrays

@@ -99,11 +99,6 @@ def evaluate(
         given.update((name, load) for name, load in zip(LOADS, loads, strict=True) if load is not None)
         if sliders is None and any(map(callable, loads)):
             values_of = _values_under_loads()
-            if quality:
-                with IMPORTS:
-                    from .under_loads.quality import evaluate_loaded_quality
-
-                return evaluate_loaded_quality(names, given, branch, accuracy, threads, out)
     if sliders is not None:
         if quality:
             raise TypeError("quality=True is of a single slider: crankshaft.members[0].evaluate(...)")

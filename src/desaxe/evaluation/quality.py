@@ -7,15 +7,23 @@ ec. With ec = +-(BC - AB - margin), the slopes by AB and BC get that by ec.
 """
 
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..loads.load import Load, OverY, TableOverTheta, ahead
+from ..loads.resolve import way_of
+from ..loads.stroke import OverStroke
+from ..loads.table import Table
 from ..mechanism.catalogue import quantity
+from ..mechanism.messages import message_of
 from ..mechanism.names import LENGTHS, parts, sensitivity
 from ..runtime.request import BOUNDS, accuracy_of, check_common, request, several
-from .arrays import as_array, broadcast_shape, refuse_other_labels
+from .arrays import as_array, broadcast_shape, numeric, refuse_other_labels
+from .under_loads.loaded import evaluate_loaded
+from .under_loads.request import MOTION, plan_for
 from .values import values
 
 Array = NDArray[np.float64]
@@ -23,6 +31,7 @@ Array = NDArray[np.float64]
 PROMISE = BOUNDS["standard"]
 ROUNDED_ONCE = 2.0**-53
 SMALLEST = 2.0**-1074
+ROUNDINGS = 8.0  # of a cubic and its distance from a knot
 MOST_DIGITS = 17.0  # what it takes to write a double down
 
 
@@ -58,18 +67,25 @@ def evaluate_quality(
         raise TypeError("out= is for plain values, not with quality=True")
     if accuracy_of(accuracy) != "standard":
         raise ValueError(f"accuracy = {accuracy!r}: quality=True knows the errors of 'standard' alone")
-    rest = {"branch": branch, "threads": threads}
+    varying = {name: load for name, load in given.items() if callable(load)}
+    for name, load in varying.items():
+        if not isinstance(load, (TableOverTheta, OverY)):
+            raise TypeError(
+                f"{name}: quality=True takes numbers and tables, whose errors it knows, not a function; give "
+                f"its values at these angles, {name} = load(theta)"
+            )
+    of = _under_loads if varying else _quality
     if isinstance(names, str):
-        return _quality(names, given, rest)
-    return {name: _quality(name, given, rest) for name in several(names)}
+        return of(names, given, branch, threads)
+    return {name: of(name, given, branch, threads) for name in several(names)}
 
 
-def _quality(name: str, given: Mapping[str, Any], rest: Mapping[str, Any]) -> Quality:
-    needs = request((name,), given, rest["branch"], "standard").inputs
+def _quality(name: str, given: Mapping[str, Any], branch: int, threads: int | None) -> Quality:
+    needs = request((name,), given, branch, "standard").inputs
     refuse_other_labels({p: given.get(p) for p in needs})
     slopes = _slope_names(name, needs, given.get("omega") is not None)
     gap = ["margin"] if name != "margin" and set(LENGTHS) <= set(needs) else []
-    found = values([name, *slopes.values(), *gap], dict(given), **rest)
+    found = values([name, *slopes.values(), *gap], dict(given), branch, threads=threads)
     arrays = {p: as_array(p, given.get(p), needs, (name,)) for p in needs}
     by = {p: np.asarray(found[slope]) for p, slope in slopes.items()}
     if name == "margin":
@@ -82,7 +98,7 @@ def _quality(name: str, given: Mapping[str, Any], rest: Mapping[str, Any]) -> Qu
             steps |= _steps_with_margin(arrays, by, np.asarray(found["margin"]))
         bound = np.abs(f) * ROUNDED_ONCE if name == "margin" else _bound(f, steps)
     plain = {p: _shaped(np.where(np.isnan(f), np.nan, c), shape) for p, c in conditions.items()}
-    return Quality(found[name], plain, _shaped(bound, shape), digits_of(f, bound, shape))
+    return Quality(found[name], plain, _shaped(bound, shape), _digits(f, bound, shape))
 
 
 def _slope_names(name: str, needs: Sequence[str], state: bool) -> dict[str, str]:
@@ -103,14 +119,14 @@ def _slope_names(name: str, needs: Sequence[str], state: bool) -> dict[str, str]
     return found
 
 
-def digits_of(f: Any, bound: Any, shape: tuple[int, ...]) -> Any:
+def _digits(f: Any, bound: Any, shape: tuple[int, ...]) -> Any:
     """Return the decimal digits that an error bound leaves of a value, a float for one point."""
     with np.errstate(all="ignore"):
         lost = np.where(bound == 0.0, 0.0, bound / np.abs(f))
         return _shaped(np.clip(-np.log10(lost), 0.0, MOST_DIGITS), shape)
 
 
-def conditions_of(f: Any, x: Any, slope: Any) -> Any:
+def _condition(f: Any, x: Any, slope: Any) -> Any:
     """|x/f df/dx|, a float for one point."""
     with np.errstate(all="ignore"):
         step = _step(np.asarray(x, float), np.asarray(slope))
@@ -148,3 +164,80 @@ def _bound(f: Array, steps: Mapping[str, Array]) -> Array:
 def _shaped(array: Array, shape: tuple[int, ...]) -> Any:
     """A copy in the broadcast shape; a float for one point."""
     return np.broadcast_to(array, shape).copy() if shape else float(array)
+
+
+# ---- under loads ------------------------------------------------------------------------------------
+
+
+def _under_loads(name: str, given: Mapping[str, Any], branch: int, threads: int | None) -> Quality:
+    """The quality of a name under loads that are tables.
+
+    Conditions are those of the whole: they count that an input moves the place at which a load is looked up;
+    that of a load is by a percent of it. The bound is that at the force of the instant, as if it were exact,
+    and what the force itself may be wrong by: what it changes within the error of its place, and the rounding
+    of a cubic.
+    """
+    numbers, plan = plan_for((name,), given)
+    forces = {n: _force_and_error(load, numbers, branch, threads) for n, load in plan.loads.items()}
+    held = {**dict.fromkeys(MOTION), **numbers, **{n: force for n, (force, _) in forces.items()}}
+    found = _quality(name, held, branch, threads)
+    if not plan.loads:
+        return found
+    by_force = {n: sensitivity(name, n) for n in plan.loads}
+    moving = {p for load in plan.loads.values() for p in load.parameters} & found.conditions.keys()
+    totals = {p: sensitivity(name, p) for p in moving}
+    try:
+        slopes = evaluate_loaded([*totals.values()], given, branch, threads=threads)
+    except ValueError as error:
+        raise ValueError(f"quality of {name}: not available under a load; " + message_of(error)) from None
+    partial = values([*by_force.values()], held, branch, threads=threads)
+    bound = np.asarray(found.error_bound)
+    for force, slope in by_force.items():
+        bound = bound + np.abs(partial[slope]) * forces[force][1]
+    bound = bound.reshape(np.shape(found.value))
+    value = evaluate_loaded(name, given, branch, threads=threads)
+    moved = {p: _condition(value, numbers[p], slopes[slope]) for p, slope in totals.items()}
+    plain = float(bound) if np.ndim(value) == 0 else np.array(bound)
+    return Quality(value, {**found.conditions, **moved}, plain, _digits(value, bound, np.shape(value)))
+
+
+def _force_and_error(
+    load: Load, numbers: Mapping[str, Any], branch: int, threads: int | None
+) -> tuple[Any, Array]:
+    """A force from a table, a number at a point, and its error bound."""
+    theta = np.asarray(numeric("theta", numbers["theta"], ("quality",)))
+    if isinstance(load, TableOverTheta):
+        room = 4.0 * ROUNDED_ONCE * (np.abs(theta) + load.period)
+        here, *beside = (load.both(at)[0] for at in (theta, theta - room, theta + room))
+        return here[()], _largest(here, beside) + ROUNDINGS * ROUNDED_ONCE * _size(load.table)
+    assert isinstance(load, OverY)
+    given = {**dict.fromkeys(MOTION), **{n: numbers[n] for n in LENGTHS}, "theta": theta}
+    names = ["Y", *([load.centre] if isinstance(load, OverStroke) else [])]
+    errors = [np.asarray(_quality(name, given, branch, threads).error_bound) for name in names]
+    motion = values(list(load.motion()), given, branch, threads=threads)
+    speeds = {n: numeric(n, numbers[n], ("quality",)) for n in ("omega0", "omega", "alpha") if n in numbers}
+    x = np.asarray(load.along(motion))
+    room = sum(errors) + 2.0 * ROUNDED_ONCE * np.abs(x)
+    way = ahead(motion, way_of(speeds))
+    piece = load.piece(x, way)
+    here = load.held(x, piece)[0]
+    ends = [np.asarray(x + side * room) for side in (-1.0, 1.0)]
+    # Where it jumps nowhere the piece is that of the exact position, which may be the next one.
+    beside = [(load.held(end, piece) if load.jumping else load.both(end, way))[0] for end in ends]
+    ways = [load.outward] if load.inward is None else [load.outward, load.inward]
+    error = _largest(here, beside) + ROUNDINGS * ROUNDED_ONCE * max(map(_size, ways))
+    return np.nan_to_num(here)[()], error
+
+
+def _largest(here: Array, beside: Sequence[Array]) -> Array:
+    return np.asarray(np.maximum.reduce([np.abs(other - here) for other in beside]))
+
+
+def _size(table: Table) -> float:
+    """The largest sum of the magnitudes of a cubic's terms on its piece."""
+    ends = [*table.knots, table.knots[0] + table.period if table.period else table.knots[-1]]
+    widths = [0.0, *(b - a for a, b in pairwise(ends))]
+    return max(
+        sum(abs(c) * width**k for k, c in enumerate(row))
+        for row, width in zip(table.rows, widths, strict=True)
+    )
