@@ -269,8 +269,8 @@ def _calls(data: Data) -> str:
     ]
     return (
         f"{table(head, rows)}\n\n"
-        "A first call finds no cache of any kind: it is answered by NumPy, or compiles. A second process\n"
-        "finds what an earlier one has compiled, and imports neither numba nor llvmlite's binding."
+        "A first call compiles what it needs, in memory, and so does a second process: nothing is kept\n"
+        "on disk but by numba, for modules that people import."
     )
 
 

@@ -1,6 +1,6 @@
 """`python -m benchmarks.startup`: what desaxe's calls take in a new process, over importing NumPy.
 
-A first call finds no cache of any kind, a second process the machine code that an earlier one has compiled.
+A first call finds no cache of any kind, a second process that of numba.
 Each figure is processor time, the least of some new processes.
 """
 
