@@ -149,6 +149,9 @@ def pair(machine, call="evaluate", name="T_in", **inputs):
         (lambda m: pair(m, "peak", **{"AB[3]": 1.0}), "sliders 0 to 1"),
         (lambda m: pair(m, "peak", speed=1.0), "no input 'speed'"),
         (lambda m: pair(m, "fit", {}), "fit is of one slider"),
+        (lambda m: dx.peak("T_in", sliders=3.0, **m), "sliders = 3.0: those of a desaxe.Crankshaft"),
+        (lambda m: dx.harmonics("T_in", sliders="four", **m), "sliders = 'four': those of"),
+        (lambda m: dx.Crankshaft(m, phase=[[0.0], [1.0, 2.0]]), "phase"),
         (lambda m: pair(m, "compile", to="c"), "a scene is of one slider"),
     ],
 )

@@ -186,6 +186,18 @@ def calls() -> dict[str, Call]:
             {"breakdown_torque": 10.0, "breakdown_slip": 0.2, "synchronous_speed": 150.0, "gear": 10.0},
         ),
         "Machine": Call(dx.Machine, (), dict(MACHINE), ("units", "branch", "m_slider", "F_Y", "alpha")),
+        "Crankshaft": Call(
+            crankshaft,
+            (dx.Machine(**MACHINE, m_slider=1.0),),
+            {"phase": [0.0, 2.0], "bank": 0.5, "spacing": 0.1},
+            ("firing", "position", "I_shaft", "units"),
+        ),
+        "harmonics of a crankshaft": Call(
+            dx.harmonics,
+            ("T_in",),
+            dict(dx.Crankshaft(dx.Machine(**MACHINE), phase=[0.0, 2.0])),
+            ("m_slider",),
+        ),
         "define": Call(defined, (), {"expression": "k*a_C", "k": 2.0}, ("unit", "meaning")),
         "over_theta": Call(
             dx.over_theta,
@@ -246,6 +258,10 @@ def written(call: Callable[..., Any]) -> Callable[..., Any]:
             call(first, Path(folder) / f"press{ENDS.get(call.__name__, '.py')}", **inputs)
 
     return write
+
+
+def crankshaft(machine: Any, **angles: Any) -> Any:
+    return dx.Crankshaft(machine, **angles).evaluate(["T_in", "C_inertia_Y"], theta=1.0)
 
 
 def evaluated_function(name: str, **inputs: Any) -> Any:

@@ -100,6 +100,10 @@ def evaluate(
         if sliders is None and any(map(callable, loads)):
             values_of = _values_under_loads()
     if sliders is not None:
+        with IMPORTS:
+            from ..runtime.request import check_sliders
+
+        check_sliders(sliders)
         if quality:
             raise TypeError("quality=True is of a single slider: crankshaft.members[0].evaluate(...)")
         return sliders.evaluate(names, {**given, **unknown}, accuracy, threads, out)

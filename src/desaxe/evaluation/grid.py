@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..mechanism.inputs import Inputs
 from ..mechanism.keywords import check_inputs
-from ..runtime.request import several, with_named_inputs
+from ..runtime.request import check_sliders, several, with_named_inputs
 from ..support.forks import IMPORTS
 from .arrays import outputs_for
 from .axes import ARGUMENTS, outer_of
@@ -96,6 +96,7 @@ def grid(
     See docs/choose.md: which call for which question.
     """
     if sliders is not None:
+        check_sliders(sliders)
         found: xr.Dataset = sliders.grid(names, inputs, accuracy, out=out, reduce=reduce, chunks=chunks)
         return found
     if any(hasattr(value, "iloc") and has_named_index(value) for value in inputs.values()):

@@ -9,10 +9,10 @@ import numpy as np
 from ..crankshaft.sliders import Sliders
 from ..crankshaft.sums import GRAVITY, STATE, ShaftSlider
 from ..mechanism.closed import TURN
-from ..mechanism.inputs import Input
+from ..mechanism.inputs import Input, row_of
 from ..mechanism.keywords import check_inputs
 from ..mechanism.messages import errors_in, listed, named
-from ..mechanism.quantity_units import UnitSystem, si_unit
+from ..mechanism.quantity_units import UnitSystem
 from ..mechanism.read import read, read_array
 from ..runtime.request import MachineSpeed
 from ..support.files import as_path
@@ -78,12 +78,14 @@ class Crankshaft(Machine):
             raise TypeError("Crankshaft: expected a Machine or a list of them, with one slider each")
         system = machines[0].units if units is None else UnitSystem.read(units)
         with errors_in(system):
-            count = max(len(machines), *map(np.size, (phase, bank, firing, position)))
-            phases, banks = (_row(n, v, count, system) for n, v in (("phase", phase), ("bank", bank)))
+            angles = {"phase": phase, "bank": bank, "firing": firing, "position": position}
+            rows = {n: _array(n, v, system) for n, v in angles.items() if v is not None}
+            count = max(len(machines), *(row.size for row in rows.values()))
+            phases, banks = (_row(n, rows[n], count) for n in ("phase", "bank"))
             fired = phases + banks
             if firing is not None:
-                fired = _fired(_row("firing", firing, count, system), fired)
-            places = _places(count, spacing, position, system)
+                fired = _fired(_row("firing", rows["firing"], count), fired)
+            places = _places(count, spacing, rows.get("position"), system)
             inertia = read(Input("I_shaft", "kg*m^2", "", 0.0, "a finite moment of inertia >= 0"), I_shaft,
                            "Crankshaft", system=system)  # fmt: skip
         if len(machines) not in (1, count):
@@ -194,11 +196,17 @@ def _restored(inputs: dict[str, Any], units: UnitSystem) -> Crankshaft:
     return Crankshaft.__new__(Crankshaft)._fill(inputs, units)
 
 
-def _row(name: str, value: Any, count: int, system: UnitSystem) -> Any:
-    """A number for each slider, in SI units; one number is that of all."""
-    array = np.atleast_1d(read_array(Input(name, si_unit(name), ""), value, system))
+def _array(name: str, value: Any, system: UnitSystem) -> Any:
+    """A number for each slider, or one for all, in SI units."""
+    return np.atleast_1d(read_array(row_of(name), value, system))
+
+
+def _row(name: str, array: Any, count: int) -> Any:
+    """A number for each slider; one number is that of all."""
     if array.ndim > 1 or array.size not in (1, count) or not np.isfinite(array).all():
-        raise ValueError(f"{name}: expected a finite number for each of {count} sliders, got {value!r}")
+        raise ValueError(
+            f"{name}: expected a finite number for each of {count} sliders, got {array.tolist()}"
+        )
     return np.broadcast_to(array, (count,)).copy()
 
 
@@ -221,7 +229,7 @@ def _places(count: int, spacing: Any, position: Any, system: UnitSystem) -> Any:
             0.0 if spacing is None else read(Input("spacing", "m", ""), spacing, "Crankshaft", system=system)
         )
         return step * (np.arange(count) - 0.5 * (count - 1))
-    places = _row("position", position, count, system)
+    places = _row("position", position, count)
     return places - 0.5 * (places.min() + places.max())
 
 

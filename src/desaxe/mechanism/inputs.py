@@ -111,6 +111,7 @@ INPUTS = {
 OF_SHAFTS = {
     "phase": Input("phase", "rad", "lag of a slider's dead centre"),
     "bank": Input("bank", "rad", "angle of a slider's axis"),
+    "firing": Input("firing", "rad", "start of the cycle of a slider's load"),
     "position": Input("position", "m", "from the middle of the shaft to a slider"),
     "I_shaft": Input("I_shaft", "kg*m^2", "moment of inertia of the shaft", 0.0, _INERTIA),
 }

@@ -25,7 +25,7 @@ from ..mechanism.keywords import check_inputs
 from ..mechanism.messages import named
 from ..mechanism.quantity_units import units_of_extreme
 from ..mechanism.status import PeakStatus
-from ..runtime.request import as_number, check_common, is_steady
+from ..runtime.request import as_number, check_common, check_sliders, is_steady
 from ..support.answer import Answer
 from ..support.shown import shown as shown_value
 from .designs import KINDS, PeakPlan, Sought, peaks_of_designs, plan_of, search_of
@@ -96,6 +96,7 @@ def peak(
         raise ValueError(f"kind = {shown_value(kind)}: it is one of {', '.join(KINDS)}")
     given = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega, **loads}
     if sliders is not None:
+        check_sliders(sliders)
         given["alpha"] = None if is_steady(alpha) else alpha
         ends = None if theta is ONE_TURN else _range(theta, name)
         whole: dict[str, Any] = sliders.peak(

@@ -145,6 +145,12 @@ def _moves(centre: str, names: tuple[str, ...], own: tuple[Definition, ...]) -> 
     return centre in program.inputs or any(parts(name)[0] == centre for name in lines)
 
 
+def check_sliders(sliders: Any) -> None:
+    """TypeError for what is not the `sliders` of a crankshaft; None is no crankshaft."""
+    if not (sliders is None or hasattr(sliders, "members")):
+        raise TypeError(f"sliders = {shown(sliders)}: those of a desaxe.Crankshaft are expected")
+
+
 def is_steady(alpha: Any) -> bool:
     """True if alpha is absent or a plain 0."""
     return alpha is None or (type(alpha) is float and alpha == 0.0)

@@ -6,7 +6,7 @@ from typing import Any
 from ..evaluation.under_loads.loaded import with_labelled
 from ..loads.motors import Motor
 from ..mechanism.inputs import TINY
-from ..runtime.request import check_common, with_known_inputs
+from ..runtime.request import check_common, check_sliders, with_known_inputs
 from ..support.checks import whole_number
 from ..support.deadline import Deadline
 from .checks import check_names, read_rtol, read_times, read_until, read_wrt, scalar
@@ -116,6 +116,7 @@ def simulate(
     }  # fmt: skip
     given = with_labelled(given)
     check_common({}, branch, threads)
+    check_sliders(sliders)
     wanted = check_names(names, sliders is None)
     max_steps = whole_number("max_steps", max_steps, 1, 10**9)
     deadline = Deadline("simulate", timeout)

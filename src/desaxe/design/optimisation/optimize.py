@@ -5,7 +5,7 @@ from functools import partial
 from typing import Any
 
 from ...mechanism.keywords import with_known_keywords
-from ...runtime.request import check_common
+from ...runtime.request import check_common, check_sliders
 from ...support.answer import Answer
 from ...support.checks import whole_number
 from ...support.deadline import Deadline
@@ -84,6 +84,7 @@ def optimize(
         (0.22, {'margin': 'lower'})
     """
     check_common({}, branch)
+    check_sliders(sliders)
     for name, number, least in (("starts", starts, 1), ("points", points, 2)):
         whole_number(name, number, least, 10_000)
     whole_number("seed", seed, 0, 2**32 - 1)

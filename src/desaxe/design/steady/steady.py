@@ -16,7 +16,7 @@ from ...mechanism.keywords import check_inputs, with_known_keywords
 from ...mechanism.messages import named
 from ...mechanism.names import LENGTHS
 from ...mechanism.read import read_array
-from ...runtime.request import as_number, check_common
+from ...runtime.request import as_number, check_common, check_sliders
 from ...support.shown import shown
 from .designs import DesignRows
 from .inertia import with_flywheels
@@ -126,6 +126,7 @@ def _designs(
 ) -> tuple[tuple[int, ...], DesignRows, NDArray[np.bool_]]:
     """The shape of the designs, these in rows, and which of them have a bad input."""
     given = {name: value for name, value in inputs.items() if value is not None}
+    check_sliders(sliders)
     turn = (
         None
         if sliders is None

@@ -14,7 +14,7 @@ from ...mechanism.keywords import with_known_keywords
 from ...mechanism.names import LENGTHS, sensitivity
 from ...mechanism.ranges import Between
 from ...mechanism.status import ToleranceStatus
-from ...runtime.request import as_number, check_common
+from ...runtime.request import as_number, check_common, check_sliders
 from ...support.checks import whole_number
 from ...support.forks import IMPORTS, imported
 from ...support.progress import Steps, progress_bar
@@ -89,6 +89,7 @@ def tolerance(
     """
     _check(distribution, sigmas, samples, seed)
     check_common(inputs, branch)
+    check_sliders(sliders)
     numbers, loads = loads_of({n: v for n, v in inputs.items() if v is not None})
     given: dict[str, Any] = {n: read(n, v, distribution, sigmas) for n, v in numbers.items()}
     means = {n: v.mean if isinstance(v, Inexact) else v for n, v in given.items()}

@@ -15,7 +15,7 @@ from ...mechanism.messages import amount, named
 from ...mechanism.names import LENGTHS
 from ...mechanism.read import read
 from ...mechanism.status import PointStatus
-from ...runtime.request import as_number, check_common, is_steady, request
+from ...runtime.request import as_number, check_common, check_sliders, is_steady, request
 from ...support.computed import computed_once
 from ...support.panels import Array
 from .cycle import MOST_TURNS, Cycle, Motion
@@ -111,6 +111,7 @@ def turn_of(
     """A design, or several sliders on one crankshaft, which know their turn themselves."""
     if sliders is None:
         return Turn(caller, inputs, branch, accelerates)
+    check_sliders(sliders)
     turn: Turn = sliders.turn(caller, inputs, accelerates)
     return turn
 
