@@ -70,6 +70,29 @@ def test_the_numbers_are_those_of_the_call(line, capsys):
     assert numbers(found) == pytest.approx(expected, rel=1e-12, abs=1e-12, nan_ok=True)
 
 
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (
+            "fit examples/feeder.toml examples/measured.csv --over AB BC --loss huber ec=20mm --json",
+            "fit examples/measured.csv over=AB,BC loss=huber ec=20mm --machine examples/feeder.toml --json",
+        ),
+        (
+            "fit examples/measured.csv --over AB=30mm:60mm --sigma Y=1mm --machine examples/motor.toml",
+            "fit examples/measured.csv over.AB=30mm:60mm sigma.Y=1mm --machine examples/motor.toml",
+        ),
+        (f"point a_C theta=1 --quality {WORDS}", f"evaluate a_C theta=1 quality=true {WORDS}"),
+    ],
+)
+def test_options_of_a_call_may_be_written_as_those_of_a_command(options, words, capsys, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    printed = []
+    for line in (options, words):
+        assert main(shlex.split(line)) == 0
+        printed.append(capsys.readouterr().out)
+    assert printed[0] == printed[1]
+
+
 @pytest.mark.parametrize("call", CALLS)
 def test_the_example_of_its_help_runs(call, capsys, monkeypatch):
     monkeypatch.chdir(ROOT)

@@ -19,6 +19,10 @@ from .words import UsageError, arguments_of, name_of
 
 # Call -> what it answers, in a line of `desaxe --help`, and the words of an example.
 CALLS = {
+    "point": (
+        "values at one crank angle of one design",
+        "a_C theta=60deg ec=10mm AB=125mm BC=350mm omega0=157",
+    ),
     "evaluate": ("values at points", "a_C,V_C theta=0deg:90deg:4 ec=10mm AB=125mm BC=350mm omega0=1500rpm"),
     "grid": ("values over a grid", "a_C theta=0deg:360deg:73 ec=0mm,10mm AB=125mm BC=350mm omega0=157"),
     "peak": ("extreme value over a turn", "a_C ec=10mm AB=125mm BC=350mm omega0=1500rpm"),
@@ -57,6 +61,7 @@ CALLS = {
         "examples/measured.csv over=AB,BC sigma.Y=0.05mm --machine examples/motor.toml",
     ),
 }
+SAME = {"point": "evaluate"}
 MISSING = re.compile(r"(\w+)\(\) missing \d+ required keyword-only arguments?: (.*)")
 PLUS_MINUS = "dx.plus_minus(value, tolerance)"
 SCENE = ", the torque also by [steady] of a scene"
@@ -66,7 +71,7 @@ def add_calls(commands: Any) -> None:
     """Add a command for each call of the table."""
     for name, (meaning, example) in CALLS.items():
         parser = add_command(commands, name, meaning, _call, text=partial(_help, name, example))
-        parser.set_defaults(call=name)
+        parser.set_defaults(call=SAME.get(name, name))
         parser.add_argument("words", nargs="*", metavar="QUANTITY | NAME=VALUE", help="quantities and inputs")
         parser.add_argument("--machine", metavar="SCENE", help="path of a TOML file with all other inputs")
         parser.add_argument("--units", help='units of plain numbers and of the answer: "mm, deg, rpm"')
@@ -77,7 +82,7 @@ def add_calls(commands: Any) -> None:
         parser.add_argument(
             "--overwrite", action="store_true", help="replace a file that desaxe did not write"
         )
-        if name == "evaluate":
+        if name in ("evaluate", "point"):
             parser.add_argument("--list", action="store_true", help="print all quantities, units, meanings")
 
 
@@ -85,7 +90,7 @@ def _help(name: str, example: str) -> str:
     """The longer help of a call, with the names of its options."""
     from inspect import Parameter, signature
 
-    every = signature(_function(name)).parameters.values()
+    every = signature(_function(SAME.get(name, name))).parameters.values()
     options = [p.name for p in every if p.kind is Parameter.KEYWORD_ONLY and p.name not in INPUTS]
     loads = [f"{load:8} {INPUTS[load].meaning}" for load in LOADS]
     facts = {"OPTIONS": ", ".join(options) or "none", "LOADS": loads, "SIGNS": SIGNS}

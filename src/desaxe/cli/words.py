@@ -12,14 +12,43 @@ class UsageError(Exception):
 
 
 VALUED = ("--machine", "--units", "-o")  # options of a call whose value is the next word
+PLAIN = ("--json", "--csv", "--overwrite", "--list", "--help", "-h")
+FLAGS = ("--quality",)  # options of functions that are true
+TABLES = ("over", "sigma", "nuisance", "loss")  # and those that have values
 
 
 def options_first(words: Sequence[str]) -> list[str]:
-    """The words of a call with its options, which may stand anywhere, ahead of names and inputs."""
+    """The words of a call with its options, which may stand anywhere, ahead of names and inputs.
+
+    `--over AB=35:50 --loss huber` is `over.AB=35:50 loss=huber`; a scene without `--machine` is the machine.
+    """
     options: list[str] = []
     others: list[str] = []
+    tables: dict[str, list[str]] = {}
+    values: list[str] = others  # where the next word belongs
     for before, word in pairwise(["", *words]):
-        (options if word.startswith("--") or word == "-o" or before in VALUED else others).append(word)
+        if word in PLAIN or word in VALUED or before in VALUED:
+            options.append(word)
+            values = others
+        elif word in FLAGS:
+            others.append(f"{word[2:]}=true")
+            values = others
+        elif word.startswith("--"):
+            if word[2:] in TABLES:
+                values = tables.setdefault(word[2:], [])
+            else:
+                options.append(word)
+        elif word.endswith(".toml") and values is others and "--machine" not in words:
+            options += ["--machine", word]
+        else:
+            if values and "=" in word and "=" not in values[-1]:  # an input behind a value that is no entry
+                values = others
+            values.append(word)
+    for key, parts in tables.items():
+        if not parts:
+            raise UsageError(f"--{key}: expected values, such as --over AB=30mm:60mm")
+        entries = [f"{key}.{part}" for part in parts if "=" in part]
+        others += entries or [f"{key}={','.join(parts)}"]
     return [*options, *others]
 
 
