@@ -66,7 +66,7 @@ def angles_of(model: Model, until: Sequence[float]) -> list[Mark]:
     ]
 
 
-class Marks(list[Mark]):
+class WatchedMarks(list[Mark]):
     """All angles to watch for; few of them lie in the range of a panel."""
 
     @computed_once
@@ -86,9 +86,9 @@ class Marks(list[Mark]):
         return [self[k] for k in np.flatnonzero(reached).tolist()]
 
 
-def marks_of(model: Model, until: Sequence[float]) -> Marks:
+def marks_of(model: Model, until: Sequence[float]) -> WatchedMarks:
     """All angles to watch for."""
-    marks = Marks(angles_of(model, until))
+    marks = WatchedMarks(angles_of(model, until))
     for which, angle in model.vanishing().items():  # its two sides, so near that nothing is lost
         marks += [Mark("no inertia", angle + s * SMALL, which, TURN, NO_INERTIA) for s in (-1.0, 1.0)]
     first, last = model.coordinate.first, model.coordinate.last
@@ -154,7 +154,7 @@ def along(panel: Panel, place: int) -> SeriesOnPanel:
 
 
 def events_in(
-    panel: Panel, model: Model, marks: Marks, left: float, heed: Callable[[], None]
+    panel: Panel, model: Model, marks: WatchedMarks, left: float, heed: Callable[[], None]
 ) -> list[Crossing]:
     """All events of a panel, in order; `left` is the angle that the stretch started from.
 
@@ -184,7 +184,7 @@ def events_in(
 
 
 def events_along(
-    panels: Sequence[Panel], model: Model, marks: Marks, left: float
+    panels: Sequence[Panel], model: Model, marks: WatchedMarks, left: float
 ) -> list[tuple[Crossing, Array]]:
     """The events of panels on which nothing is cut and no speed vanishes, in order, with q and v there."""
     y, series = np.array([panel.y for panel in panels]), np.array([panel.series for panel in panels])

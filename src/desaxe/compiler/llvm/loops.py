@@ -117,4 +117,4 @@ def _entry(function: Compiled, types: Sequence[Kind]) -> str:
     return "\n".join([f"define i64 @{ENTRY}(ptr %words) {WIDE} {{", *rows, "}"])
 
 
-__all__ = ["CompiledLoops", "LoopModule", "address", "apart", "call"]
+__all__ = ["CompiledLoops", "address", "apart", "call"]
