@@ -19,7 +19,7 @@ from ..units.system import Conversion
 from .function import called
 from .load import POSITION, Load, OverTheta, OverY
 from .stroke import OverStroke
-from .table import Table
+from .table import Arrays, Table, arrays_of
 
 COLUMNS = ("theta", "omega", "Y", "s", "V_C")  # that functions take, besides t
 SPEEDS = ("omega0", "omega", "alpha")  # inputs that say how fast the crank turns
@@ -228,6 +228,10 @@ class OverSpeed(OfMotion):
     def tables(self) -> tuple[Table, ...]:  # type: ignore[override]
         """The table."""
         return (self.table,)
+
+    def arrays(self) -> Arrays:
+        """The knots and coefficients of the table."""
+        return arrays_of(self.table)
 
     @property
     def speeds(self) -> tuple[float, ...]:

@@ -9,12 +9,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import isfinite
 from numbers import Real
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from ..mechanism.inputs import INPUTS
 from ..mechanism.read import read
 from ..support.shown import shown
-from .along_motion import SumOfLoads
+from .along_motion import Damper, OverSpeed, Spring, SumOfLoads
 from .function import FunctionOverTheta
 from .load import Load, OverTheta, OverY, TableOverTheta
 from .table import Row, Table, polynomial
@@ -82,6 +82,42 @@ def total(one: Load, other: Any) -> Any:
 def _terms(load: Load) -> tuple[tuple[tuple[float, Load], ...], float]:
     """A load as multiples of loads, and a number."""
     return (load.terms, load.constant) if isinstance(load, SumOfLoads) else (((1.0, load),), 0.0)
+
+
+def as_tables(load: Load) -> list[Load] | None:
+    """Tables that add up to a load; None of one that is none, as a function is."""
+    if isinstance(load, Spring):
+        row = 0.0, -load.stiffness, 0.0, 0.0
+        return [OverY(Table((load.free,), (row, row)), None, "linear")]
+    if isinstance(load, Damper):
+        rows = tuple((0.0, -load.linear, side * load.quadratic, 0.0) for side in (1.0, -1.0))
+        return [OverSpeed(Table((0.0,), rows), "smooth")]
+    if not isinstance(load, SumOfLoads):
+        return [load] if isinstance(load, (TableOverTheta, OverY, OverSpeed)) else None
+    tables: list[Load] = []
+    for factor, member in load.terms:
+        parts = as_tables(member)
+        if parts is None:
+            return None
+        tables += [_times(part, factor) for part in parts]
+    return [_raised_table(tables[0], load.constant), *tables[1:]]
+
+
+def _times(load: Load, factor: float) -> Load:
+    """A table times a number."""
+    return (
+        replace(load, table=_scaled(load.table, factor))
+        if isinstance(load, OverSpeed)
+        else multiple(load, factor)
+    )
+
+
+def _raised_table(load: Load, number: float) -> Load:
+    """A table and a number."""
+    if not isinstance(load, OverSpeed):
+        return _raised(load, number)
+    rows = tuple((row[0] + number, *row[1:]) for row in load.table.rows)
+    return replace(load, table=replace(load.table, rows=rows))
 
 
 def _raised(load: Load, number: float) -> Load:

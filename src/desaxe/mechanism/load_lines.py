@@ -22,12 +22,13 @@ from .names import LENGTHS, STATUS
 class LoadLines(NamedTuple):
     """A load: the force, what its table is over, and the period of one over theta.
 
-    over    "theta", "Y", the position of a dead centre: "Y_outer" or "Y_inner"; "" of a force that stays an
+    over    "theta", "Y", "V_C", a dead centre's position "Y_outer" or "Y_inner"; "" of a force that stays an
             input, as its derivative is, `<force>_by_theta`
     period  of a table over theta: a number, 0 without one, or the name of an input
     first   the first knot of such a table
     ways    whether another table holds for the way inward
     held    whether the number of the piece that holds is an input, `<force>_piece`
+    parts   of a sum: the lines of its tables
     """
 
     force: str
@@ -36,6 +37,7 @@ class LoadLines(NamedTuple):
     first: float | str = 0.0
     ways: bool = True
     held: bool = False
+    parts: tuple["LoadLines", ...] = ()
 
 
 class Total(NamedTuple):
@@ -122,29 +124,64 @@ class _Writer:
 
     def load(self, load: LoadLines, parameters: set[str]) -> None:
         """The lines of a force and of its derivatives by these parameters."""
-        force, table = load.force, TableName(load.force)
+        force = load.force
         if not load.over:
             self.slopes.update({(force, p): f"{force}_by_{p}" for p in parameters})
             return
+        values = [self._look_up(part, parameters) for part in load.parts or (load,)]
+        value = values[0]
+        for number, other in enumerate(values[1:]):
+            value = self.new(f"{force}_sum_{number}", "add", value, other)
+        size = self.new(f"{force}_size", "abs", value)
+        finite = self.new(f"{force}_is_finite", "le", size, float_info.max, type="bool")
+        self.new(force, "select", finite, value, 0.0)  # a point without motion has a status of its own
+        self.notes[force] = Note(INPUTS[force].unit, INPUTS[force].meaning)
+        if load.parts:
+            self._add_up(load, parameters)
+
+    def _add_up(self, load: LoadLines, parameters: set[str]) -> None:
+        """The derivatives of a sum, and where it has none: those of its parts."""
+        force = load.force
+        for p in sorted(parameters):
+            slopes = [self.slopes[part.force, p] for part in load.parts if (part.force, p) in self.slopes]
+            total: Argument = 0.0
+            for number, slope in enumerate(slopes):
+                total = self.new(f"{force}_by_{p}_{number}", "add", total, slope)
+            self.slopes[force, p] = total
+        marks = [self.status[part.force] for part in load.parts if part.force in self.status]
+        if marks:
+            there, moves = marks[0]
+            for number, (other, others) in enumerate(marks[1:]):
+                there = self.new(f"{force}_are_there_{number}", "and", there, other, type="bool")
+                moves = self.new(f"{force}_move_{number}", "and", moves, others, type="bool")
+            self.status[force] = there, moves
+
+    def _look_up(self, load: LoadLines, parameters: set[str]) -> str:
+        """The lines of the value of a table and of its derivatives; the name of the value."""
+        force, table = load.force, TableName(load.force)
+        parameters = {p for p in parameters if self._depends(load, p)}
         x = self._reduced(load) if load.over == "theta" else self._along(load)
         piece = f"{force}_piece"
         if not load.held:
             way = 1.0 if load.over == "theta" or not load.ways else self._ahead()
             self.new(piece, "lookup_piece", x, table, way)
         value = self.new(f"{force}_found", "lookup", x, table, piece)
-        size = self.new(f"{force}_size", "abs", value)
-        finite = self.new(f"{force}_is_finite", "le", size, float_info.max, type="bool")
         slope = self.new(f"{force}_slope", "lookup_slope", x, table, piece) if parameters else ""
-        self.new(force, "select", finite, value, 0.0)  # a point without motion has a status of its own
-        self.notes[force] = Note(INPUTS[force].unit, INPUTS[force].meaning)
         for p in sorted(parameters):
             if load.over == "theta":
                 self.slopes[force, p] = slope
             else:
                 moved = self._moved(load, p)
                 self.slopes[force, p] = self.new(f"{force}_by_{p}", "mul", slope, moved)
-        if load.over not in ("theta", "Y"):
+        if load.over not in ("theta", "Y", "V_C"):
             self._mark(load, parameters)
+        return value
+
+    def _depends(self, load: LoadLines, parameter: str) -> bool:
+        """True if what a table is over depends on a parameter."""
+        if load.over == "theta":
+            return parameter == "theta"
+        return f"{'V_C' if load.over == 'V_C' else 'Y'}_wrt_{parameter}" in self.names
 
     def _reduced(self, load: LoadLines) -> str:
         """The crank angle in the first period of a table."""
@@ -163,9 +200,9 @@ class _Writer:
         return self.new(f"{force}_at", "select", early, after, inside)
 
     def _along(self, load: LoadLines) -> str:
+        if load.over in ("Y", "V_C"):
+            return self.names[load.over]
         Y = self.names["Y"]
-        if load.over == "Y":
-            return Y
         away = self.new(f"{load.force}_away", "sub", self.names[load.over], Y)
         return self.new(f"{load.force}_at", "abs", away)
 
@@ -184,9 +221,9 @@ class _Writer:
 
     def _moved(self, load: LoadLines, parameter: str) -> Argument:
         """The derivative of what a table is over by a parameter."""
+        if load.over in ("Y", "V_C"):
+            return self.names[f"{load.over}_wrt_{parameter}"]
         by = self.names[f"Y_wrt_{parameter}"]
-        if load.over == "Y":
-            return by
         name = f"{load.force}_at_by_{parameter}"
         if parameter in LENGTHS:
             centre = self.names[f"{load.over}_wrt_{parameter}"]

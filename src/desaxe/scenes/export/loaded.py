@@ -2,16 +2,17 @@
 
 from collections.abc import Mapping
 
-from ...loads.load import Load, OverY, TableOverTheta
+from ...loads.lines import tables_of
+from ...loads.load import Load
 from ..schema import SceneError
 
 
-def require_tables(where: str, loads: Mapping[str, Load]) -> None:
-    """SceneError for a load that cannot be written into a module."""
+def require_tables(where: str, loads: Mapping[str, Load], alone: bool = False) -> None:
+    """SceneError for a load that cannot be written into a module; alone: nor any but tables over theta and Y."""
     for name, load in loads.items():
-        if not isinstance(load, (TableOverTheta, OverY)):
+        if not tables_of(name, load) or (alone and name not in tables_of(name, load)):
             raise SceneError(
-                f"{where}: loads.{name} = {load!r}: a compiled module holds tables over theta or Y; sample "
+                f"{where}: loads.{name} = {load!r}: a compiled module holds tables; sample "
                 "the function, desaxe.over_theta(angles, f(angles)), or leave the load open as a list of "
                 "values, and give it at each angle"
             )

@@ -13,7 +13,7 @@ from ...compiler.passes.guard import guard_inputs
 from ...compiler.passes.pipeline import optimise
 from ...compiler.program import Line, Program, renamed
 from ...compiler.text import read_function
-from ...loads.lines import line_of, totals_of
+from ...loads.lines import lines_of, totals_of
 from ...loads.load import Load
 from ...loads.resolve import plan_of
 from ...mechanism.inputs import LEAST
@@ -92,9 +92,9 @@ def _base(
         return specialise(names, form, fixed)
     public = tuple(name for name in names if name != "lean")
     plan = plan_of(public, loads, True, public != names)
-    every = tuple(dict.fromkeys((*names, *plan.names, *plan.motion)))
+    every = tuple(dict.fromkeys((*names, *plan.names, *plan.motion, *plan.of_motion)))
     base = specialise(every, form, fixed)
-    lines = [line_of(name, load) for name, load in plan.loads.items()]
+    lines = [lines_of(name, load) for name, load in plan.loads.items()]
     of_all = {total.name: total for total in totals_of(plan)}
     totals = [of_all.get(name, Total(name)) for name in names]
     return with_totals(base, dict(zip(every, base.outputs, strict=True)), lines, totals, TurningSense("way"))

@@ -10,7 +10,7 @@ from ...compiler.languages.protocol import Forms, Module, Symbol
 from ...compiler.passes.double_double import double_double
 from ...compiler.passes.guard import guard_inputs
 from ...compiler.program import Program, tables_in
-from ...loads.lines import line_of, totals_of
+from ...loads.lines import lines_of, tables_of, totals_of
 from ...loads.load import Load
 from ...loads.resolve import plan_of, split
 from ...mechanism.catalogue import law_name, quantities, quantity
@@ -83,7 +83,7 @@ class PortableRequest(NamedTuple):
         if program is None or not self.loads:
             return program
         names = dict(zip(own.shown, program.outputs, strict=True))
-        lines = [line_of(n, load) for n, load in self.loads.items()]
+        lines = [lines_of(n, load) for n, load in self.loads.items()]
         return with_totals(program, names, lines, self.totals, self.way)
 
 
@@ -113,8 +113,10 @@ def module_of(scene: Scene, order: Order, more: Sequence[str] = (), opened: Sequ
     moves = None
     if has_masses(given):
         moves = motion_solver(given, content.branch, loads)
-    used = {*asked.loads, *(tables_in(moves.solve) if moves else ())}
-    tables = {n: load.arrays() for n, load in loads.items() if n in used}
+    needed = [name for item in asked.loads.items() for name in tables_of(*item)]
+    used = {*needed, *(tables_in(moves.solve) if moves else ())}
+    every = {name: table for item in loads.items() for name, table in tables_of(*item).items()}
+    tables = {n: table.arrays() for n, table in every.items() if n in used}
     told = (derivatives, values, solvers(dict(fixed)), own, moves, tables)
     return Module(order.name, head, inputs, outputs, forms, constants(), *told)
 
@@ -171,7 +173,7 @@ def asked_of(content: Content, names: Iterable[str]) -> PortableRequest:
     if "omega0" not in given and "omega" not in given:
         given["omega0"] = 0.0  # no requested name needs a speed
     plan = plan_of(shown, loads, "omega" in given, "mu" in given)
-    every = tuple(dict.fromkeys((*plan.names, *plan.motion)))
+    every = tuple(dict.fromkeys((*plan.names, *plan.motion, *plan.of_motion)))
     asked = request(every, {**given, **dict.fromkeys(loads, 1.0)}, content.branch, content.accuracy)
     values = {n: given.get(n, 0.0) for n in asked.inputs if n not in plan.loads}
     fixed = dict(asked.fixed) | {n: value for n, value in values.items() if not isinstance(value, tuple)}

@@ -109,7 +109,7 @@ def _check(scene: Scene, drive: str) -> None:
     content = scene.content
     if content.accuracy == "extended":
         raise SceneError(f'{where}: accuracy = "extended": an FMU has standard')
-    require_tables(where, split(content.inputs)[1])
+    require_tables(where, split(content.inputs)[1], alone=True)
     if drive == "torque" and not has_masses(content.inputs):
         raise SceneError(
             f"{where}: nothing moves under a torque without inertia: give [masses], or --input omega"
