@@ -13,11 +13,14 @@ PLACES = {"Y": [0.03, 0.05, 0.06, 0.09], "stroke": [0.0, 0.008, 0.012, 0.02]}
 FORCES, BACK = [-900.0, -200.0, -50.0, -30.0], [-90.0, -40.0, -15.0, -3.0]
 SHAPES = ("smooth", "kinked", "jumping")
 # What a table is over, and whether the way inward has one of its own.
-KINDS = ("theta", "Y", "Y both ways", "outer", "outer both ways", "inner", "inner both ways")
+KINDS = ("theta", "Y", "Y both ways", "outer", "outer both ways", "inner", "inner both ways", "sum")
 
 
 def load(kind, shape, scale=1.0, turns=1):
     """A load of a kind and shape; a table over theta may go over some turns."""
+    if kind == "sum":
+        tables = load("theta", shape, scale) - load("outer both ways", shape, scale)
+        return tables + 2 * dx.damper(20.0 * scale, 3.0 * scale) + dx.spring(3e3 * scale, free=0.07) + scale
     over, own = kind.partition(" ")[0], " both" in kind
     form = "cubic" if shape == "smooth" else "linear"
     forces, back = [scale * f for f in FORCES], [scale * f for f in BACK] if own else None

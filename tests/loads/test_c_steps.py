@@ -55,7 +55,7 @@ def press_under(tmp_path_factory):
     ("kind", "shape"),
     [
         pytest.param(kind, shape, marks=[] if (kind, shape) == (KIND, "jumping") else pytest.mark.thorough)
-        for kind in (KIND, "theta", "Y")
+        for kind in (KIND, "theta", "Y", "sum")
         for shape in SHAPES
     ],
 )
@@ -71,7 +71,8 @@ def test_the_torque_of_the_acceleration_is_the_torque(kind, shape, press_under):
 
 
 @pytest.mark.parametrize(
-    ("kind", "shape"), [(KIND, "jumping"), pytest.param("theta", "smooth", marks=pytest.mark.thorough)]
+    ("kind", "shape"),
+    [(KIND, "jumping"), pytest.param("theta", "smooth", marks=pytest.mark.thorough), ("sum", "smooth")],
 )
 def test_steps_follow_simulate(kind, shape, press_under):
     """Of order 4 where the table is smooth; across jumps and the change at dead centres of order 1."""

@@ -17,7 +17,8 @@ from tests.effort import cases
 from tests.loads.module_loads import FIXED, INPUTS, KINDS, NAMES, SHAPES, columns, load, scene
 
 DEFAULT = {
-    ("c", "inner both ways"), ("c", "theta"), ("c", "outer"), ("octave", "Y"), ("octave", "inner both ways"),
+    ("c", "inner both ways"), ("c", "theta"), ("c", "outer"), ("c", "sum"),
+    ("octave", "Y"), ("octave", "inner both ways"),
     ("javascript", "theta"), ("javascript", "outer both ways"),
 }  # fmt: skip
 

@@ -14,7 +14,7 @@ from typing import Any, TypeVar, cast
 from ..mechanism.inputs import INPUTS
 from ..mechanism.read import read
 from ..support.shown import shown
-from .along_motion import Damper, OverSpeed, Spring, SumOfLoads
+from .along_motion import Damper, OfMotion, OverSpeed, Spring, SumOfLoads
 from .function import FunctionOverTheta
 from .load import Load, OverTheta, OverY, TableOverTheta
 from .table import Row, Table, polynomial
@@ -82,6 +82,14 @@ def total(one: Load, other: Any) -> Any:
 def _terms(load: Load) -> tuple[tuple[tuple[float, Load], ...], float]:
     """A load as multiples of loads, and a number."""
     return (load.terms, load.constant) if isinstance(load, SumOfLoads) else (((1.0, load),), 0.0)
+
+
+def parts_of(load: OfMotion) -> list[Load] | None:
+    """Tables that add up to a load, made once; None of one that is none, as a function is."""
+    known = load.__dict__
+    if "_parts" not in known:
+        known["_parts"] = as_tables(load)
+    return cast("list[Load] | None", known["_parts"])
 
 
 def as_tables(load: Load) -> list[Load] | None:

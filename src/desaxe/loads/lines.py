@@ -2,7 +2,7 @@
 
 from ..mechanism.load_lines import LoadLines, Total
 from .along_motion import OfMotion, OverSpeed
-from .arithmetic import as_tables
+from .arithmetic import parts_of
 from .load import Load, OverY, TableOverTheta
 from .resolve import LoadPlan
 
@@ -17,8 +17,8 @@ def line_of(name: str, load: Load) -> LoadLines:
 
 
 def lines_of(name: str, load: Load) -> LoadLines:
-    """The lines of a load of which each part is a table."""
-    if not isinstance(load, OfMotion):
+    """The lines of a load; those of its parts where each is a table."""
+    if not isinstance(load, OfMotion) or not tables_of(name, load):
         return line_of(name, load)
     parts = [
         LoadLines(part, "V_C", ways=False) if isinstance(table, OverSpeed) else line_of(part, table)
@@ -31,7 +31,7 @@ def tables_of(name: str, load: Load) -> dict[str, Load]:
     """The tables of a load by the names that its lines have; nothing of a function."""
     if not isinstance(load, OfMotion):
         return {name: load} if isinstance(load, (TableOverTheta, OverY)) else {}
-    parts = as_tables(load) or ()
+    parts = parts_of(load) or ()
     return {f"{name}_part_{number}": table for number, table in enumerate(parts, 1)}
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ..units.system import Conversion
 
 MOST_RANGES = 16  # of angles, of which a table remembers the nodes
-ARRAYS = ("_arrays", "columns", "lists")  # that are computed once
+ARRAYS = ("_parts", "_arrays", "columns", "lists")  # that are computed once
 POSITION = ("Y", "Y_wrt_theta", "Y_wrt_theta_theta")  # which piece holds: the position, and the way
 
 

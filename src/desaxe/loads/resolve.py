@@ -23,6 +23,7 @@ from ..mechanism.quantity_units import UnitSystem
 from ..support.forks import IMPORTS
 from .along_motion import COLUMNS, FunctionOfMotion, OfMotion
 from .arguments import arguments_of, by_position
+from .arithmetic import parts_of
 from .function import FunctionOverTheta
 from .load import Load, OverY
 from .stroke import OverStroke
@@ -169,7 +170,7 @@ def _new_plan(
         if isinstance(load, OverY):
             motion |= dict.fromkeys(load.motion(by))
         elif isinstance(load, OfMotion):
-            of_motion |= dict.fromkeys(load.motion(by, state))
+            (of_motion if parts_of(load) is None else motion).update(dict.fromkeys(load.motion(by, state)))
     more = (term.slope for term in every)
     wanted = tuple(dict.fromkeys((*names, *more)))
     return LoadPlan(tuple(names), wanted, terms, used, tuple(motion), forces_of, tuple(of_motion))

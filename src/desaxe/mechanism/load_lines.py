@@ -39,6 +39,11 @@ class LoadLines(NamedTuple):
     held: bool = False
     parts: tuple["LoadLines", ...] = ()
 
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """The names of its tables."""
+        return tuple(part.force for part in self.parts or (self,) if part.over)
+
 
 class Total(NamedTuple):
     """A name, the forces that it depends on, and terms: (the name of a slope, force, parameter)."""

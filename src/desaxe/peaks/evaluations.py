@@ -92,7 +92,7 @@ def _of_designs(key: Search, part: str) -> ProgramFunction:
 def totals_of(key: Search, part: str) -> TotalsFunction:
     """The totals of a search under loads: `curve`, value and slope, or `finish`, these with the gradient."""
     under = key.form.under
-    tables = [] if under is None else [load.force for load in under.loads if load.over]
+    tables = [] if under is None else [name for load in under.loads for name in load.tables]
     return TotalsFunction(getattr(programs_of(key), part), tables)
 
 

@@ -37,7 +37,7 @@ class ValuesUnderLoads:
         self.designs, self.course, self.search = designs, course, search
         self.all = [name, *(sensitivity(name, p) for p in ("theta", *search.parameters))]
         self.under, self.loads = search_under(search, self.all, designs)
-        self.tables = self.loads.tables()
+        self.tables = {name: np.asarray(table) for name, table in self.loads.tables().items()}
 
     def at(self, count: int, rows: Rows, theta: Array, pieces: dict[str, Rows] | None = None) -> list[Array]:
         """Value, slope and gradient, the first `count` of them, at angles that broadcast with some designs.
@@ -75,7 +75,7 @@ class ValuesUnderLoads:
         known = evaluate_arrays(motion, motion.inputs, flat, 1, None)
         of_motion = [n for n in needed if n not in columns and n != "theta"]
         loads = {n: a for n, a in self.designs.loads.items() if isinstance(a, OfMotion)}
-        found = LoadInputs(loads, tuple(of_motion)).at(flat, known)
+        found = LoadInputs(loads, tuple(of_motion), motion).at(flat, known)
         return {
             name: np.broadcast_to(x, flat["theta"].shape).reshape(given["theta"].shape)
             for name, x in found.items()
@@ -141,6 +141,8 @@ def _of_partial(search: Search, under: Under, loads: Mapping[str, Load]) -> Unde
 
 
 def _line(line: LoadLines, load: Load) -> LoadLines:
+    if line.parts:
+        return line
     if isinstance(load, OverY):
         return line._replace(held=True, ways=False) if load.jumping else line
     return LoadLines(line.force, "")

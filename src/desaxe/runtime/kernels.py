@@ -130,7 +130,7 @@ def kernel_of(key: KernelKey) -> Kernel:
 def tables_of(key: KernelKey) -> tuple[str, ...]:
     """The tables of a key's loads, which are arguments of its kernel."""
     under = key.form.under
-    return () if under is None else tuple(load.force for load in under.loads if load.over)
+    return () if under is None else tuple(name for load in under.loads for name in load.tables)
 
 
 def _loops_of(key: KernelKey) -> Kernel:

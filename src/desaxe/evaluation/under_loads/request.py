@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 from ...loads.along_motion import SPEEDS, OfMotion
 from ...loads.function import naming
-from ...loads.lines import line_of, totals_of
-from ...loads.load import Load, OverTheta, OverY, TableOverTheta, ahead
+from ...loads.lines import lines_of, tables_of, totals_of
+from ...loads.load import Load, OverTheta, TableOverTheta, ahead
 from ...loads.resolve import LoadPlan, plan_of, split, way_of
 from ...mechanism.load_lines import LoadLines, TurningSense, Under
 from ...mechanism.names import LENGTHS, STATUS
@@ -49,9 +49,9 @@ class LoadInputs(NamedTuple):
     def tables(self, arrays: bool = True) -> dict[str, Any]:
         """The arrays and numbers of tables, by the names of a kernel's inputs."""
         result: dict[str, Any] = {}
-        for name, load in self.loads.items():
-            if isinstance(load, (TableOverTheta, OverY)):
-                result[f"{name}_x"], result[f"{name}_c"] = load.columns if arrays else load.lists
+        every = [one for item in self.loads.items() for one in tables_of(*item).items()]
+        for name, load in every:
+            result[f"{name}_x"], result[f"{name}_c"] = load.columns if arrays else load.lists
             if isinstance(load, TableOverTheta):
                 result |= {f"{name}_first": load.table.knots[0], f"{name}_period": load.period}
         return result
@@ -64,7 +64,7 @@ class LoadInputs(NamedTuple):
         theta = given["theta"]
         for name in self.loads if self.functions else ():
             load = self.loads[name]
-            if isinstance(load, OfMotion):
+            if isinstance(load, OfMotion) and self.motion is not None and not tables_of(name, load):
                 result |= self._of_motion(name, load, {**motion, "theta": theta}, given)
             elif name in self.functions or f"{name}_by_theta" in self.functions:
                 assert isinstance(load, OverTheta)
@@ -82,7 +82,7 @@ class LoadInputs(NamedTuple):
             value, by = load.partials({**motion, "way": way})
         by_name = f"{name}_by_"
         needed = [one.removeprefix(by_name) for one in self.functions if one.startswith(by_name)]
-        return {name: value, **{by_name + p: load.total(by, p, motion) for p in needed}}
+        return {name: _finite_or_zero(value), **{by_name + p: load.total(by, p, motion) for p in needed}}
 
 
 class LoadedRequest(NamedTuple):
@@ -163,7 +163,8 @@ def _new_request(
             plan.of_motion, {**dict.fromkeys(MOTION), **needed, "theta": 1.0}, branch, "standard"
         )
     more = () if motion is None else motion.inputs
-    made = by | {f"{load}{end}" for load in plan.loads for end in ("", "_first", "_period")}
+    forces = [*plan.loads, *(part for item in plan.loads.items() for part in tables_of(*item))]
+    made = by | {f"{load}{end}" for load in forces for end in ("", "_first", "_period")}
     taken = {*asked.inputs, "theta", *more} - made
     inputs = tuple(name for name in dict.fromkeys((*given, *asked.inputs, *more)) if name in taken)
     return asked, inputs, tuple(name for name in asked.inputs if name in by or name in plan.loads), motion
@@ -171,10 +172,14 @@ def _new_request(
 
 def _lines(name: str, load: Load) -> LoadLines:
     """The lines of a load; the bounds of a table over theta are inputs."""
-    lines = line_of(name, load)
-    if lines.over == "theta":
-        return lines._replace(period=f"{name}_period", first=f"{name}_first")
-    return lines
+    lines = lines_of(name, load)
+    return _with_inputs(lines)._replace(parts=tuple(map(_with_inputs, lines.parts)))
+
+
+def _with_inputs(lines: LoadLines) -> LoadLines:
+    if lines.over != "theta":
+        return lines
+    return lines._replace(period=f"{lines.force}_period", first=f"{lines.force}_first")
 
 
 def _sense(given: Mapping[str, Any]) -> TurningSense:

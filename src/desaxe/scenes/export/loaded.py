@@ -8,11 +8,11 @@ from ..schema import SceneError
 
 
 def require_tables(where: str, loads: Mapping[str, Load], alone: bool = False) -> None:
-    """SceneError for a load that cannot be written into a module; alone: nor any but tables over theta and Y."""
+    """SceneError for a load that cannot be written into a module; alone: as one table over theta or Y."""
     for name, load in loads.items():
         if not tables_of(name, load) or (alone and name not in tables_of(name, load)):
             raise SceneError(
-                f"{where}: loads.{name} = {load!r}: a compiled module holds tables; sample "
+                f"{where}: loads.{name} = {load!r}: a compiled module holds tables over theta, Y, V_C; sample "
                 "the function, desaxe.over_theta(angles, f(angles)), or leave the load open as a list of "
                 "values, and give it at each angle"
             )
