@@ -85,6 +85,7 @@ def test_other_functions_are_refused(load, message):
         (lambda: dx.damper(linear=np.nan), "linear = nan"),
         (lambda: dx.spring([1.0, 2.0], 0.1), "stiffness"),
         (lambda: dx.spring(1.0, 0.1) + float("inf"), "the number must be finite"),
+        (lambda: 10**400 * dx.spring(1.0, 0.1), "the factor must be finite"),
         (lambda: dx.simulate(torque=dx.spring(1.0, 0.1), t_end=1.0, **DESIGN), "torque = <spring"),
         (lambda: dx.steady(torque=dx.over_V([0, 1], [1, 0]), **DESIGN), "torque = <load over V_C"),
         (lambda: dx.evaluate("T_in_wrt_AB", theta=1.0, F_Y=lambda V_C: V_C, **TURNING), "desaxe.over_V"),

@@ -63,8 +63,8 @@ def evaluate(
     r_crank, r_rod     centres of mass: from A towards B, from B towards C [m]; half of AB and BC where
                        they are not given, and then a derivative by AB or BC moves them too
     F_X, F_Y, g_X, g_Y external force on the slider [N], gravity [m/s^2]; F_X and F_Y may vary with the
-             motion: `over_theta`, `over_Y`, `over_stroke` or a function of theta; derivatives are then
-             total ones
+             motion: `over_theta`, `over_Y`, `over_stroke`, `over_V`, `spring`, `damper`, a sum of them, or
+             a function of any of theta, omega, Y, s, V_C; derivatives are then total ones
     mu       Coulomb friction of the slider's guide, against its motion or the one that alpha starts. There
              is none at rest; for the breakaway torque pass a tiny omega0
     accuracy "standard": within 8 ulp x (1 + the sum of condition numbers), next to singular points too;

@@ -7,8 +7,9 @@ are attached to them here.
 from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import isfinite
+from math import inf, isfinite
 from numbers import Real
+from sys import float_info
 from typing import Any, TypeVar, cast
 
 from ..mechanism.inputs import INPUTS
@@ -43,9 +44,7 @@ def multiple(load: Load, factor: Any) -> Any:
     """A load times a number."""
     if isinstance(factor, bool) or not isinstance(factor, Real):
         return NotImplemented
-    if not isfinite(factor):
-        raise ValueError(f"{shown(factor)} times a load: the factor must be finite")
-    factor = float(factor)
+    factor = _finite(factor, f"{shown(factor)} times a load: the factor")
     if isinstance(load, TableOverTheta):
         return _like(load, replace(load, table=_scaled(load.table, factor)))
     if isinstance(load, OverY):
@@ -60,7 +59,7 @@ def multiple(load: Load, factor: Any) -> Any:
 def total(one: Load, other: Any) -> Any:
     """The sum of two loads, or of a load and a number; over the same thing where it is of their kind."""
     if isinstance(other, Real) and not isinstance(other, bool):
-        return _raised(one, _in_si(one, float(other)))
+        return _raised(one, _in_si(one, other))
     if not isinstance(other, Load):
         return NotImplemented
     if one.unit is not None and other.unit is not None and one.unit != other.unit:
@@ -145,12 +144,18 @@ def _raised(load: Load, number: float) -> Load:
     return _like(load, SumOfLoads(terms, constant + number))
 
 
-def _in_si(load: Load, number: float) -> float:
+def _in_si(load: Load, number: Any) -> float:
     """A number that is added to a load, in SI units from those of its machine."""
+    number, units = _finite(number, f"a load + {shown(number)}: the number"), load.shown_in
+    return number if units is None else float(load.values_in(units).to_si(number))
+
+
+def _finite(value: Any, what: str) -> float:
+    """A number as a float; ValueError for one that is not finite."""
+    number = float(value) if abs(value) <= float_info.max else inf
     if not isfinite(number):
-        raise ValueError(f"a load + {shown(number)}: the number must be finite")
-    units = load.shown_in
-    return float(number) if units is None else float(load.values_in(units).to_si(number))
+        raise ValueError(f"{what} must be finite")
+    return number
 
 
 def shifted(load: OverTheta, angle: Any) -> OverTheta:

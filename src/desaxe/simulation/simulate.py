@@ -58,8 +58,9 @@ def simulate(
     t_end        how long to follow the motion [s]
     theta0, omega_start   crank angle [rad] and speed [rad/s] at t = 0; the speed of a Machine is its own
     AB, BC, ec, branch, masses, centres of mass, gravity, mu   as in `evaluate`
-    F_X, F_Y     external force on the slider [N]: the same, or `over_Y`; the integration starts again at
-                 the kinks and jumps of tables, and at the nodes of a function
+    F_X, F_Y     external force on the slider [N]: the same, `over_Y`, `over_stroke`, `over_V`, `spring`,
+                 `damper` or a sum; the integration starts again at the kinks and jumps of tables over
+                 angle and position, and at the nodes of a function
     names        quantities and sensitivities of a given state along the motion, by `evaluate`: NaN at
                  a limit angle, and where no or two sets of forces balance the acceleration as given
     rtol         relative tolerance: the largest errors of theta and omega are about rtol of their largest
@@ -67,7 +68,8 @@ def simulate(
     times        instants of the histories [s]; by default 1001 from start to end
     until        crank angle or angles [rad]: the first that is reached ends the motion
     wrt          parameters by which the motion is differentiated: inputs of the mechanism that are numbers,
-                 "theta0", "omega_start", "torque" where it is a number
+                 "theta0", "omega_start", "torque" where it is a number, and numbers of loads such as
+                 "F_Y.stiffness"
     derivative   for wrt, of a torque that is a function: one of t, theta, omega that returns dT/dtheta
                  and dT/domega; and dT/dt, without which the instants of "break-away" have no derivative
     max_steps    more panels than this are a failure
