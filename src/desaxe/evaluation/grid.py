@@ -66,7 +66,7 @@ def grid(
 
     The inputs are those of `evaluate`. Each 1-d input is a dimension, in the order given; a number
     becomes a coordinate without one, and a load that varies with the motion follows theta: `over_theta`,
-    `over_Y`, a function as in `evaluate`, or a labelled array over the dimension theta. The Dataset has the names
+    `over_Y`, others of `evaluate`, or a labelled array over the dimension theta. The Dataset has the names
     requested over all dimensions, `status` (int8, with CF flags) and `margin`, over those that it depends on.
 
     With `out` (an array, or a dict name -> array, of the grid's shape) the arrays are filled and

@@ -357,6 +357,7 @@ class MotionCurve(FunctionCurve):
         self.load, self.arguments, self.depends_on_time = load, load.needs, False
         self.design: SliderDesign | None = None
         self.zero, self.derivative = 0.0, None
+        self.follows_the_slider = not {"Y", "s", "V_C"}.isdisjoint(load.needs)
 
     def stand(self, design: SliderDesign, lengths: tuple[float, ...], branch: int) -> None:
         """Stand in a design; ValueError where it has not the dead centre that a load is measured from."""
