@@ -131,7 +131,7 @@ def cannot_turn(caller: str, turn: Turn) -> ValueError:
 
 
 def _number(caller: str, name: str, value: Any) -> float:
-    more = " or a load or function that varies with the motion" if name in VARIABLE else ""
+    more = " or a function of theta, over_theta or over_Y" if name in VARIABLE else ""
     each = f"[desaxe.{caller}({name}=value, ...) for value in values]"
     one = f"one number{more}, for one design; call it for each of them, as in {each}"
     return check_range(caller, name, read(INPUTS[name], value, caller, one))
