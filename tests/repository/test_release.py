@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.repository.contract import FILE, lines
+
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 
@@ -37,3 +39,8 @@ def test_the_workflow_covers_the_pythons_that_are_declared():
     workflow = (ROOT / ".github/workflows/ci.yml").read_text("utf-8")
     covered = re.search(r"python: \[(.*)\]", workflow)[1].replace('"', "").split(", ")
     assert covered == [declared[0], declared[-1]]
+
+
+def test_nothing_of_the_contract_is_gone_or_changed():
+    """A new line is no breach: `python -m tests.repository.contract` adds it to the list before a release."""
+    assert not {*FILE.read_text("utf-8").splitlines()} - {*lines()}

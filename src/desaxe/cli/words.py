@@ -41,14 +41,16 @@ def options_first(words: Sequence[str]) -> list[str]:
         elif word.endswith(".toml") and values is others and "--machine" not in words:
             options += ["--machine", word]
         else:
-            if values and "=" in word and "=" not in values[-1]:  # an input behind a value that is no entry
+            if values and "=" in word and values is tables.get("loss"):  # an input behind a value
                 values = others
             values.append(word)
     for key, parts in tables.items():
         if not parts:
             raise UsageError(f"--{key}: expected values, such as --over AB=30mm:60mm")
-        entries = [f"{key}.{part}" for part in parts if "=" in part]
-        others += entries or [f"{key}={','.join(parts)}"]
+        if any("=" in part for part in parts):
+            others += [f"{key}.{part}" if "=" in part else f"{key}.{part}=none" for part in parts]
+        else:
+            others.append(f"{key}={','.join(parts)}")
     return [*options, *others]
 
 
@@ -115,9 +117,9 @@ def _toleranced(text: str) -> Any:
 
 
 def _single(text: str) -> Any:
-    """True, False, a whole number, or the text as it is: of a quantity, or a word such as `kind=max`."""
-    if text in ("true", "false"):
-        return text == "true"
+    """True, False, None, a number, or the text as it is: of a quantity, or a word such as `kind=max`."""
+    if text in ("true", "false", "none"):
+        return {"true": True, "false": False}.get(text)
     try:
         return int(text)
     except ValueError:

@@ -286,4 +286,4 @@ def test_a_scene_gives_all_of_its_machine(tmp_path, capsys):
     assert (found["status"], found["value"]["m_slider"]) == (0, pytest.approx(4.0, rel=1e-12))
     scene.write_text(SCENE.format(mu=[0.1, 0.2]), encoding="utf-8")
     assert main(["fit", str(scene), str(path), "--over", "m_slider"]) == 2
-    assert "mu: the scene has 2 values" in capsys.readouterr().err
+    assert "mu: 2 values, and a fit is of one machine" in capsys.readouterr().err

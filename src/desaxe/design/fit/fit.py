@@ -88,6 +88,11 @@ def fit(
         raise ValueError(f"loss = {shown(loss)}: {did_you_mean(loss, LOSSES)}there are {', '.join(LOSSES)}")
     whole_number("seed", seed, 0, 2**32 - 1)
     read = read_data(data, "omega" in state)
+    for name, value in fixed.items():
+        if np.ndim(value) and np.size(value) not in (1, read.size) and not callable(value):
+            raise ValueError(
+                f"{name}: {np.size(value)} values, and a fit is of one machine: give one, or a range in over"
+            )
     unknowns = unknowns_of(over, nuisance, read, fixed)
     if read.size < len(unknowns):
         raise ValueError(
