@@ -120,6 +120,37 @@ def test_a_scene_brings_machine_motor_and_units(tmp_path, capsys):
     assert json.loads(capsys.readouterr().out)["stroke"] == pytest.approx(machine.events()["stroke"])
 
 
+@pytest.mark.parametrize(
+    ("written", "words", "inputs"),
+    [
+        ("fluctuation = 0.001", "", {"fluctuation": 0.001}),
+        ("flywheel_inertia = 3", "", {"flywheel_inertia": 3.0}),
+        ("flywheel_inertia = [3, 6]", "", {"flywheel_inertia": [3.0, 6.0]}),
+        ("flywheel_inertia = [3, 6]", "fluctuation=0.001", {"fluctuation": 0.001}),
+        ("fluctuation = 0.001", "flywheel_inertia=5", {"flywheel_inertia": 5.0}),
+    ],
+)
+def test_steady_takes_all_of_its_scene(written, words, inputs, tmp_path, capsys):
+    scene = tmp_path / "press.toml"
+    motor = "{ kloss = { breakdown_torque = 40, breakdown_slip = 0.15, synchronous_speed = 157 } }"
+    lengths = "[mechanism]\nAB = 0.05\nBC = {}\nec = 0\n[masses]\nm_slider = 20\nI_crank = 2\n"
+    more = f"[steady]\ntorque = {motor}\n{written}\n"
+    scene.write_text(lengths.format(0.2) + more)
+    assert main(["steady", "--machine", str(scene), *words.split(), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    design = {"AB": 0.05, "BC": 0.2, "ec": 0.0, "m_slider": 20.0, "I_crank": 2.0}
+    answer = dx.steady(torque=dx.kloss(40.0, 0.15, 157.0), **design, **inputs)
+    for name in ("flywheel_inertia", "fluctuation", "omega_mean"):
+        np.testing.assert_allclose(found[name], answer[name], rtol=1e-12)
+    if not words:
+        own = dx.scene(scene).run().steady.dataset
+        np.testing.assert_allclose(found["flywheel_inertia"], own["flywheel_inertia"], rtol=1e-12)
+    scene.write_text(lengths.format("[0.2, 0.3]") + more)
+    refused = "[" in written and not words
+    assert main(["steady", "--machine", str(scene), *words.split(), "--json"]) == (2 if refused else 0)
+    assert ("give flywheel_inertia as NAME=VALUE" in capsys.readouterr().err) == refused
+
+
 def test_files_and_tables(tmp_path, capsys):
     words = ["grid", "a_C", "theta=0deg:360deg:5", *LENGTHS.split(), "omega0=157"]
     assert main([*words, "--csv"]) == 0

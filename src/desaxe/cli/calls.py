@@ -5,6 +5,7 @@ A call of this table is a method of `Machine` of the same name. To add one, add 
 
 import argparse
 import re
+from collections.abc import Mapping
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -12,6 +13,7 @@ from typing import Any
 
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LOADS
+from ..support.shown import with_unit
 from ..support.template import file_text, filled
 from .answers import require_target, written
 from .parser import SIGNS, add_command
@@ -53,7 +55,7 @@ CALLS = {
     "design_map": ("quantities over designs", "stroke ec=0mm:20mm:3 AB=100mm,120mm BC=350mm"),
     "simulate": ("motion under a torque", "torque=20 t_end=1s ec=0 AB=125mm BC=350mm I_crank=0.1"),
     "steady": (
-        "steady motion on a motor: the [steady] torque of a scene, or a number",
+        "steady motion on a motor: that of a scene's [steady], or a torque",
         "--machine examples/motor.toml flywheel_inertia=3",
     ),
     "fit": (
@@ -175,7 +177,7 @@ def _machine(options: argparse.Namespace, arguments: dict[str, Any]) -> tuple[An
         machine = Machine(units=options.units)
     else:
         machine = Machine.read(options.machine, units=options.units)
-        arguments = {**_motor(options), **arguments}
+        arguments = {**_motor(options, arguments), **arguments}
     if options.call in OF_RANGES:
         pairs = [name for name, value in arguments.items() if name in INPUTS and type(value) is tuple]
         arguments |= {name: between(*arguments[name]) for name in pairs}
@@ -206,9 +208,32 @@ def _quantities(call: str, names: list[str]) -> list[Any]:
     return [measures if first.name == "names" else measures[0]] if names else []
 
 
-def _motor(options: argparse.Namespace) -> dict[str, Any]:
-    """The torque of the scene's [steady], for the calls that ask for one."""
+def _motor(options: argparse.Namespace, arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """The [steady] of the scene, for the calls that ask for a torque; a flywheel is of `steady` alone.
+
+    A flywheel or a fluctuation among the arguments stands for both of the scene's: each asks for the other.
+    """
+    from ..scenes.parts.motor import ROWS
     from ..scenes.scene import scene
 
     steady = scene(options.machine).content.steady if options.call in ("steady", "simulate") else None
-    return {} if steady is None else {"torque": steady.torque}
+    if steady is None:
+        return {}
+    if options.call == "simulate" or any(name in arguments for name in ROWS):
+        return {"torque": steady.torque}
+    several = [name for name in steady.axes if name not in arguments]
+    wheel = next((name for name in several if name in ROWS), None)
+    if wheel is not None and len(several) > 1:
+        lists = " and ".join(several)
+        raise UsageError(
+            f"desaxe steady: the scene has lists of {lists}: give {wheel} as NAME=VALUE; "
+            "desaxe run computes all of their combinations"
+        )
+    wheels = {name: value for name, value in {**steady.fixed, **steady.axes}.items() if name in ROWS}
+    texts = {name: _in_si(ROWS[name].unit, value) for name, value in wheels.items()}
+    return {"torque": steady.torque, **texts}
+
+
+def _in_si(unit: str, value: Any) -> Any:
+    """SI numbers as texts, which mean the same in a machine of any units."""
+    return [_in_si(unit, one) for one in value] if isinstance(value, tuple) else with_unit(repr(value), unit)
