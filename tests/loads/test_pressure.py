@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe.machine.scenes import _toml as toml
+from desaxe.scenes.schema import SceneError
 
 ENGINE = {"ec": 0.002, "AB": 0.04, "BC": 0.13, "omega0": 200.0, "m_slider": 0.5}
 BORE, AMBIENT = 0.083, 1e5
@@ -114,6 +116,86 @@ def test_over_the_slider_s_place(tmp_path):
         np.testing.assert_allclose(torque(theta, load), torque(theta, force), rtol=1e-11, atol=1e-9)
 
 
+SCENE = {
+    "units": "mm, deg, rpm, bar",
+    "outputs": ["T_in"],
+    "mechanism": {"ec": 2, "AB": 40, "BC": 130},
+    "motion": {"theta": [20, 100, 250], "omega0": 900},
+}
+
+
+@pytest.mark.parametrize(
+    ("table", "make"),
+    [
+        ({"over_Y": "indicator.csv"},
+         lambda **piston: dx.over_Y([0.09, 0.17], [1e5, 9e5], [1e5, 2e5], **piston)),
+        ({"over_Y": [[90, 1, 1], [170, 9, 2]]},
+         lambda **piston: dx.over_Y([0.09, 0.17], [1e5, 9e5], [1e5, 2e5], **piston)),
+        ({"over_stroke": [[0, 900], [80, 100]], "value": "kPa", "dead_centre": "outer"},
+         lambda **piston: dx.over_stroke([0, 0.08], [9e5, 1e5], dead_centre="outer", **piston)),
+        ({"over_theta": [[0, 1], [90, 9]], "kind": "linear"},
+         lambda **piston: dx.over_theta([0, math.pi / 2], [1e5, 9e5], "linear", **piston)),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize(
+    ("piston", "size"),
+    [
+        ({"bore": "60 mm", "ambient": "1 bar"}, math.pi * 0.06**2 / 4.0),
+        ({"bore": 60, "ambient": 1}, math.pi * 0.06**2 / 4.0),
+        ({"area": "28 cm2", "ambient": "0.1 MPa"}, 28e-4),
+    ],
+)
+def test_a_scene_reads_pressures(table, make, piston, size, tmp_path):
+    (tmp_path / "indicator.csv").write_text("Y [mm],out [bar],back [bar]\n90,1,1\n170,9,2\n", "utf-8")
+    path = tmp_path / "pump.toml"
+    path.write_text(toml({**SCENE, "loads": {"F_Y": {**table, **piston}}}), "utf-8")
+    found = dx.scene(path).run().dataset["T_in"]
+    by_hand = make(area=size, ambient=1e5)
+    design = {"ec": 0.002, "AB": 0.04, "BC": 0.13, "omega0": 30.0 * math.pi}
+    expected = dx.evaluate("T_in", theta=np.radians([20.0, 100.0, 250.0]), F_Y=by_hand, **design)
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
+    again = dx.scene(dx.Machine.read(path).to_scene(tmp_path / "forces.toml", outputs="T_in"))
+    theta = np.array([1.0, 4.0])
+    forces = [dx.evaluate("T_in", theta=theta, F_Y=load, **design) for load in (again.inputs["F_Y"], by_hand)]
+    np.testing.assert_allclose(*forces, rtol=1e-12)
+
+
+def pump(**piston):
+    """A scene with a load of pressures."""
+    return dx.scene({**SCENE, "loads": {"F_Y": {"over_Y": [[90, 1], [170, 9]], **piston}}})
+
+
+def test_plain_pressures_of_a_file_are_not_taken_for_those_of_the_scene(tmp_path):
+    path = tmp_path / "plain.csv"
+    path.write_text("Y [mm],p\n90,1\n170,9\n", "utf-8")
+    load = {"over_Y": str(path), "bore": 60}
+    scene = {**SCENE, "loads": {"F_Y": load}}
+    with pytest.raises(SceneError, match=r"its plain numbers would be in SI units.*outward \[bar\]"):
+        dx.scene(scene)
+    assert dx.scene({**SCENE, "loads": {"F_Y": {**load, "value": "bar"}}}).inputs["F_Y"](0.17) < -2500.0
+    plain = dx.over_Y(["90 mm", "170 mm"], [1e5, 9e5], bore="60 mm")
+    with pytest.raises(ValueError, match=r'in bar: give machine.over_Y.*"... bar"'):
+        dx.Machine(units="mm, bar", F_Y=plain)
+
+
+@pytest.mark.parametrize(
+    ("ambient", "units", "write"),
+    [(1, "mm, deg", '"1 bar"'), (0.1, "mm", '"0.1 MPa"'), (101.3, "mm", '"101.3 kPa"'), (14.7, "mm", "psi"),
+     (1, "mm, bar", None), ("1 Pa", "mm", None), (0, "mm", None), (1e5, "mm", None)],
+)  # fmt: skip
+def test_an_ambient_pressure_far_below_the_others_is_a_slip(ambient, units, write, tmp_path):
+    path = tmp_path / "indicator.csv"
+    path.write_text("Y [mm],out [bar]\n90,1\n170,9\n", "utf-8")
+    machine = dx.Machine(units=units)
+    if write is None:
+        machine.over_Y.read(path, bore="60 mm", ambient=ambient)
+        return
+    with pytest.warns(dx.UnitWarning, match=f"ambient = .* Pa beside pressures up to 900000 Pa.*{write}"):
+        machine.over_Y.read(path, bore="60 mm", ambient=ambient)
+    with pytest.warns(dx.UnitWarning, match="ambient"):
+        machine.over_Y([0.1, 0.2], ["1 bar", "9 bar"], bore="60 mm", ambient=ambient)
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [
@@ -123,6 +205,9 @@ def test_over_the_slider_s_place(tmp_path):
         ),
         (lambda: dx.over_Y([0, 1], ["1 bar", "2 bar"]), "over_Y: outward: a pressure needs"),
         (lambda: dx.over_Y([0, 1], [1, 2], bore=0.1, area=1), "area and bore both"),
+        (lambda: pump(ambient=1), "loads.F_Y: over_Y: ambient is a pressure, which needs area= or bore="),
+        (lambda: pump(bore=-6), "loads.F_Y: bore = -0.006: .* a length > 0"),
+        (lambda: pump(bore="6 bar"), r"loads.F_Y: bore = '6 bar'"),
         (lambda: dx.over_Y([0, 1], [1, 2], ambient=1e5), "ambient is a pressure, which needs area= or bore="),
         (lambda: dx.over_Y([0, 1], ["1 N", "2 N"], bore=0.1), "'1 N': it must be a quantity in Pa"),
         (lambda: dx.over_stroke([0, 1], [1, 2], bore=-1, dead_centre="outer"), "bore = -1: .*a length > 0"),

@@ -15,11 +15,15 @@ UNORDERED = (str, bytes, bytearray, memoryview, Set, Mapping)  # or no numbers, 
 
 
 class Column(NamedTuple):
-    """Finite numbers in SI units; the unit that they were given in, and whether one of them had none."""
+    """Finite numbers in SI units; the unit that they were given in, and whether one of them had none.
+
+    kind  "value", or "pressure" for forces that pressures stand for
+    """
 
     values: list[float]
     unit: str | None = None
     plain: bool = False
+    kind: str = "value"
 
 
 def places_and_values(places: Any, values: Any) -> tuple[Any, Any]:

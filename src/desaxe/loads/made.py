@@ -49,7 +49,7 @@ def table_over_theta(
         if len(x) == 1:  # both ends of a period alone: the same everywhere
             x, y = [x[0], x[0] + 0.5 * period], 2 * y
     _warn_of_gap(x, kind, period, units)
-    plain = ("theta",) * (angles.plain or turn.plain) + ("value",) * values.plain
+    plain = ("theta",) * (angles.plain or turn.plain) + (values.kind,) * values.plain
     table = _finite(name, x, y, partial(periodic, x, y, kind, period))
     return TableOverTheta(table, kind, values.unit, plain)
 
@@ -143,7 +143,7 @@ def ascending_table(
 def _given(place: str, x: Column, ways: Sequence[Column]) -> tuple[str | None, tuple[str, ...]]:
     """The unit of the values, and what was given as plain numbers."""
     unit = next((way.unit for way in ways if way.unit is not None), None)
-    return unit, (place,) * x.plain + ("value",) * any(way.plain for way in ways)
+    return unit, (place,) * x.plain + (ways[0].kind,) * any(way.plain for way in ways)
 
 
 def _both_ways(

@@ -2,18 +2,24 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import pi
+from math import log, pi
 from typing import Any
+from warnings import warn
 
 from ..mechanism.inputs import TINY, Input
 from ..mechanism.quantity_units import SI, UnitSystem
 from ..mechanism.read import read
+from ..mechanism.slips import UnitWarning
 from ..units.system import Conversion
 from .columns import Column, column_of
 
 AREA = Input("area", "m^2", "of the piston", TINY, "an area > 0")
 BORE = Input("bore", "m", "diameter of the piston", TINY, "a length > 0")
 AMBIENT = Input("ambient", "Pa", "pressure on the other side of the piston", 0.0, "a finite pressure >= 0")
+PISTON = (AREA, BORE, AMBIENT)
+ATMOSPHERE = 1e5  # Pa
+VACUUM, PRESSED = 1e3, 1e4  # Pa: nobody works against a vacuum below the one with pressures above the other
+UNITS = {"bar": 1e5, "kPa": 1e3, "MPa": 1e6, "psi": 6894.757}
 
 
 @dataclass(frozen=True)
@@ -22,6 +28,7 @@ class Piston:
 
     area: float
     ambient: float
+    written: float = 0.0  # a plain number of pascals that stood for the ambient pressure
 
     def force(self, pressure: Any) -> Any:
         """The force along Y of a pressure [Pa]."""
@@ -33,8 +40,21 @@ class Piston:
         return ForceOfPressure(function, self.area, self.ambient), slope
 
     def column(self, pressures: Column) -> Column:
-        """A column of pressures as one of forces."""
-        return Column([self.force(value) for value in pressures.values], "N")
+        """A column of pressures as one of forces; warns of an ambient pressure far below them."""
+        self._warn_of_ambient(max(map(abs, pressures.values), default=0.0))
+        return Column([self.force(value) for value in pressures.values], "N", pressures.plain, "pressure")
+
+    def _warn_of_ambient(self, largest: float) -> None:
+        if not (self.written and 0.0 < self.ambient < VACUUM and largest > PRESSED):
+            return
+        as_meant = {unit: abs(log(self.written * size / ATMOSPHERE)) for unit, size in UNITS.items()}
+        meant = min(as_meant, key=as_meant.__getitem__)
+        warn(
+            f"ambient = {self.written:.6g} Pa beside pressures up to {largest:.6g} Pa, almost surely a slip: "
+            f'write ambient = "{self.written:.6g} {meant}"',
+            UnitWarning,
+            stacklevel=6,
+        )
 
 
 @dataclass(frozen=True)
@@ -69,7 +89,8 @@ def piston_of(name: str, area: Any, bore: Any, ambient: Any, units: UnitSystem |
     else:
         size = read(AREA, area, name, "an area", system)
     less = 0.0 if ambient is None else read(AMBIENT, ambient, name, "a pressure", system)
-    return Piston(size, less)
+    in_pascals = isinstance(ambient, (int, float)) and system.of_unit("Pa").si == 1
+    return Piston(size, less, ambient if in_pascals else 0.0)
 
 
 def forces_of(

@@ -48,9 +48,12 @@ def as_load(name: str, value: Any) -> Load:
 
 
 def plain_units(name: str, load: Any, units: UnitSystem) -> dict[str, str]:
-    """Place or "value" -> the unit that plain numbers of a load could be meant in, where it is not SI."""
+    """Place, "value" or "pressure" -> the unit that plain numbers could be meant in, where it is not SI."""
     plain = getattr(load, "plain", ())
-    there = {place: units.of(name if place == "value" else place) for place in plain}
+    there = {
+        place: units.of_unit("Pa") if place == "pressure" else units.of(name if place == "value" else place)
+        for place in plain
+    }
     return {place: conversion.unit for place, conversion in there.items() if conversion.si != 1}
 
 

@@ -100,7 +100,10 @@ DeadCentre = Annotated[
 
 
 class Varying(SceneSection, frozen=True):
-    """A range of values, or a load over the motion: over the angle, over Y, or from a dead centre."""
+    """A range of values, or a load over the motion: over the angle, over Y, or from a dead centre.
+
+    With the bore or the area of a piston its values are pressures, less the ambient one.
+    """
 
     start: Number | None = None
     stop: Number | None = None
@@ -119,6 +122,9 @@ class Varying(SceneSection, frozen=True):
     Y: Unit | None = None
     distance: Unit | None = None
     value: Unit | None = None
+    bore: Number | None = None
+    area: Number | None = None
+    ambient: Number | None = None
 
 
 _FORCE = (

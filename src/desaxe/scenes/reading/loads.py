@@ -6,15 +6,17 @@ from typing import Any
 
 from ...loads.load import Load
 from ...loads.motors import Motor
+from ...loads.pressure import PISTON
 from ...loads.resolve import plain_units
 from ...loads.tabulated import over_stroke, over_theta, over_Y
 from ...mechanism.quantity_units import UnitSystem
+from ...mechanism.read import in_si
 from ...support.extras import MissingExtraError
 from ..schema import Range, SceneError, Varying, shown
 from .values import Value, values_of
 
 RANGE = ("start", "stop", "num", "step")
-BOTH = ("kind", "value")  # keys of a table over either
+BOTH = ("kind", "value", *(row.name for row in PISTON))  # keys of a table over either
 WAYS = ("outward", "inward")
 OWN = {
     "over_theta": ("values", "period", "theta", *BOTH),
@@ -71,7 +73,7 @@ def load_of(key: str, written: Varying, folder: Path | None, units: UnitSystem) 
         raise SceneError(f'{key}.dead_centre is missing: "outer" or "inner", from which over_stroke measures')
     try:
         if isinstance(source, str):
-            return _from_file(over, source, given, folder)
+            return _from_file(over, source, given, folder, units)
         return _from_points(over, source, given, units)
     except MissingExtraError:
         raise
@@ -87,7 +89,8 @@ def require_units_of_file(key: str, name: str, written: Varying, load: Any, unit
     needed = plain_units(name, load, units) if over and written.period is None else {}
     if over is None or not needed:
         return
-    force, place = needed.pop("value", ""), next(iter(needed.values()), "")
+    force = needed.pop("value", "") or needed.pop("pressure", "")
+    place = next(iter(needed.values()), "")
     both = getattr(load, "inward", None) is not None
     heads = (name,) if over == "over_theta" else WAYS if both else WAYS[:1]
     heading = [(UNITS[over], place), *((head, force) for head in heads)]
@@ -106,10 +109,13 @@ def file_of(name: str, folder: Path | None) -> Path:
     return beside if beside is not None and beside.exists() else Path(name)
 
 
-def _from_file(over: str, name: str, given: dict[str, Any], folder: Path | None) -> Load:
+def _from_file(over: str, name: str, given: dict[str, Any], folder: Path | None, units: UnitSystem) -> Load:
     columns = [column for column in COLUMNS[over] if column in given]
     if columns:
         raise ValueError(f"{columns[0]} beside a file: the file has the values")
+    for row in PISTON:  # plain numbers of the scene, where those of the file are in SI units
+        if isinstance(given.get(row.name), (int, float)):
+            given[row.name] = in_si(row, given[row.name], units)
     made: Load = MAKE[over].read(file_of(name, folder), **given)
     return made
 
