@@ -3,6 +3,7 @@
 import codecs
 import math
 import random
+import sys
 
 import numpy as np
 import pandas
@@ -10,6 +11,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.design.fit.data import read_data
+from desaxe.support.extras import MissingExtraError
 from desaxe.units.parse import factor_to_si, in_unit
 from desaxe.units.scaling import by_digits
 
@@ -186,6 +188,20 @@ def test_workbooks(tmp_path):
         ValueError, match=r"press\.xlsx, row 3, column 2 \(value\): 'x' is not a finite number"
     ):
         dx.over_theta.read(path)
+
+
+@pytest.mark.parametrize(
+    ("missing", "end", "remedy"),
+    [
+        ("openpyxl", "xlsx", r"needs openpyxl: python -m pip install 'desaxe\[excel\]'"),
+        ("pandas", "xlsx", r"needs pandas: python -m pip install 'desaxe\[excel\]'"),
+        ("xlrd", "xls", "needs xlrd; or save it as .xlsx"),
+    ],
+)
+def test_a_workbook_without_its_reader_names_the_extra(missing, end, remedy, monkeypatch):
+    monkeypatch.setitem(sys.modules, missing, None)
+    with pytest.raises(MissingExtraError, match=rf"the workbook die\.{end} {remedy}"):
+        dx.over_stroke.read(f"die.{end}", dead_centre="outer")
 
 
 @pytest.mark.parametrize("heads", ["theta,a_C", "theta [deg],a_C [mm/s2]", "theta, deg;a_C, m/s2"])

@@ -9,6 +9,7 @@ import csv
 import io
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from importlib import import_module
 from itertools import islice, takewhile
 from math import inf, nan
 from pathlib import Path
@@ -17,14 +18,14 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from ..support.extras import explained
+from ..support.extras import MissingExtraError, explained
 from ..support.files import as_path, read_bytes
 from ..support.forks import IMPORTS
 from ..support.shown import printable, shown
 from ..units.text import plain_number
 
 MOST_BYTES = 100_000_000  # of a file
-SHEETS = (".xlsx", ".xlsm", ".xls", ".ods")
+SHEETS = {".xlsx": "openpyxl", ".xlsm": "openpyxl", ".xls": "xlrd", ".ods": "odf"}  # what reads them
 MISSING = frozenset(("", "nan", "na", "<na>", "n/a", "#n/a", "nat", "none", "null", "-", "--"))
 DECIMAL_COMMA = "a decimal comma needs semicolons or tabs between the columns"
 _BATCH = 2_000  # rows at once, which a processor's cache holds
@@ -255,8 +256,14 @@ def _with_single_blanks(line: str) -> str:
 
 
 def _cells_of_sheet(path: Path) -> Cells:
-    with explained(f"the workbook {printable(path)}"), IMPORTS:
-        import pandas
+    what = f"the workbook {printable(path)}"
+    try:
+        with explained(what, "excel"), IMPORTS:
+            import pandas
+
+            import_module(SHEETS[path.suffix.lower()])
+    except ModuleNotFoundError as error:  # of no extra
+        raise MissingExtraError(f"{what} needs {error.name}; or save it as .xlsx") from None
     frame = pandas.read_excel(path, header=None, dtype=object)
     rows = [
         (k, ["" if pandas.isna(cell) else str(cell) for cell in row]) for k, row in enumerate(frame.values, 1)

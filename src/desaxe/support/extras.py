@@ -20,6 +20,7 @@ EXTRAS = {
     "tqdm": "scene",
     "plotly": "explore",
     "xlsxwriter": "excel",
+    "openpyxl": "excel",
     "fmpy": "fmu",
     "scipy": "simulate",
     "flint": "rigorous",
