@@ -281,6 +281,16 @@ def test_units_of_a_scene_that_are_none():
         ({"AB": 0.125, "units": "mm"}, 'AB = 0.125 mm, write AB = "0.125 m"'),
         ({"g_Y": -9.81, "units": "mm"}, '"-9.81 m/s^2"'),
         ({"AB": " 0.125", "units": "mm"}, 'AB = 0.125 mm, write AB = "0.125 m"'),
+        (
+            {"omega0": 60000, "units": "mm, deg, rpm"},
+            "omega0 = 60000 rpm, where more than 9549.3 rpm is unus",
+        ),
+        (
+            {"omega0": 60000, "units": "deg/s"},
+            "omega0 = 60000 deg/s, where more than 57295.8 deg/s is unusual",
+        ),
+        ({"AB": 50000, "units": "mm"}, "AB = 50000 mm, where more than 20000 mm is unusual"),
+        ({"BC": 5000, "units": "cm"}, 'BC = 5000 cm, write BC = "5000 mm"'),
     ],
 )
 def test_slips_of_a_machine(inputs, words):

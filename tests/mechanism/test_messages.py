@@ -116,6 +116,7 @@ def test_a_knot_is_no_force_of_a_machine():
 
 SLIPS = {
     'breakdown_slip = "15 %"': lambda: dx.kloss(40.0, 15.0, 157.0),
+    "breakdown_slip = 1500, where a slip of 1 is standstill": lambda: dx.kloss(40.0, 1500, 0.15),
     'synchronous_speed = "1500 rpm"': lambda: dx.kloss(40.0, 0.15, 1500.0),
     'omega = "1500 rpm"': lambda: dx.over_omega([0.0, 1500.0], [40.0, 0.0]),
     'AB = "50 mm"': lambda: dx.steady(

@@ -13,12 +13,24 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ..support.shown import with_unit
+from ..units.parse import factor_to_si
+from ..units.system import Conversion
 from ..units.text import plain_number
 from .inputs import INPUTS
 from .quantity_units import SI, UnitSystem
 from .ranges import Between, PlusMinus
 from .read import number_of
-from .typical import FARTHEST, FORCES, GRAVITY, KINDS, SIZE, TURNS
+from .typical import (
+    FARTHEST,
+    FORCES,
+    GRAVITY,
+    KINDS,
+    MOST_PERCENT,
+    SHARE,
+    SIZE,
+    TURNS,
+    Typical,
+)
 
 LINKS, SHORTEST = ("AB", "BC"), 5e-4  # m: shorter ones are in metres where another unit is meant
 WEAKEST = 0.1  # m/s^2: a gravity below is in m/s^2 where another unit is meant
@@ -146,7 +158,19 @@ def _slip(name: str, value: Any, units: UnitSystem, inputs: Mapping[str, Any]) -
         return None
     remedy = '"{number:.6g} m"' if in_si and kind is SIZE else kind.remedy
     remedy = remedy.format(number=value, earth=9.81 if value > 0 else -9.81, hundredth=value / 100)
-    return Slip(kind, with_unit(f"{name} = {value:.6g}", conversion.unit) + f", write {name} = {remedy}")
+    written = with_unit(f"{name} = {value:.6g}", conversion.unit)
+    if kind is SHARE and value > MOST_PERCENT:
+        return Slip(kind, f"{written}, where a slip of 1 is standstill: is it a speed, in the wrong order?")
+    if wrong and not _is_in_smaller_unit(remedy, kind, conversion):
+        limit = with_unit(f"{conversion.shown(kind.most):.6g}", conversion.unit)
+        return Slip(kind, f"{written}, where more than {limit} is unusual")
+    return Slip(kind, f"{written}, write {name} = {remedy}")
+
+
+def _is_in_smaller_unit(remedy: str, kind: Typical, conversion: Conversion) -> bool:
+    """False for a remedy in the unit that was meant anyhow, or in a larger one."""
+    unit = remedy.strip('"').partition(" ")[2]
+    return not unit or kind is GRAVITY or factor_to_si(unit, unit, kind.unit) < conversion.si
 
 
 def _is_typed(value: float) -> bool:
