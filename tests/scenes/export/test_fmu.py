@@ -275,6 +275,75 @@ def test_friction_holds_the_crank(kind, made):
     assert found["theta"][-1] == pytest.approx(wanted["theta"][-1], abs=1e-6)
 
 
+SLIDER = {
+    "AB": 0.05, "BC": 0.2, "ec": 0.012, "m_slider": 20.0, "m_crank": 1.5, "m_rod": 0.8, "I_crank": 0.02,
+    "I_rod": 0.004, "g_X": -9.81, "mu": 0.3,
+}  # fmt: skip
+RAMPS = {
+    "a ramp": (1.0, 0.0, [0.0, 0.5], [0.0, 10.0]),
+    "backwards": (2.0, 0.0, [0.0, 0.5], [0.0, -10.0]),
+    "steeper": (5.5, 0.0, [0.0, 0.3], [0.0, 20.0]),
+    "slower": (4.0, 0.0, [0.0, 0.4], [0.0, 7.3]),
+    "to the bound, and the other way": (1.0, 0.0, [0.0, 0.2, 0.6], [0.0, 2.5, -9.0]),
+    "after a standstill": (1.0, 4.0, [0.0, 0.1, 0.4], [0.0, 0.0, 9.0]),
+    "after a standstill, backwards": (1.0, -4.0, [0.0, 0.1, 0.4], [0.0, 0.0, -9.0]),
+}
+
+
+@pytest.mark.parametrize(("theta", "way"), [(1.0, 1.0), (1.0, -1.0), (2.0, -1.0), (4.0, 1.0)])
+def test_an_event_at_the_break_away_is_decided(theta, way, made):
+    """At the doubles around an indicator's zero, that of the statics: held below it, or released."""
+    start = {**dict.fromkeys(("F_X", "F_Y", "g_Y", "omega_start"), 0.0), **SLIDER, "theta0": theta}
+    one = Instance(made("torque"), start=start).start()
+    zeros = (ctypes.c_double * one.about.numberOfEventIndicators)()
+
+    def indicator(torque):
+        one.set(torque=way * torque)
+        one.fmu.getEventIndicators(zeros, len(zeros))
+        return min(zeros)
+
+    held, free = 0.0, 20.0
+    while held < (middle := 0.5 * (held + free)) < free:
+        held, free = (middle, free) if indicator(middle) > 0.0 else (held, middle)
+    balance = truth("T_in", theta=theta, omega=0.0, alpha=way * 1e-12, **SLIDER)
+    assert way * free == pytest.approx(float(balance), rel=1e-9)
+    for torque in (held, free):
+        indicator(torque)
+        one.fmu.enterEventMode()
+        one.fmu.newDiscreteStates()
+        one.fmu.enterContinuousTimeMode()
+        assert indicator(torque) > 0.0
+    assert way * one.get("der(omega)")[0] > 0.0
+    one.close()
+
+
+@pytest.mark.parametrize("name", RAMPS)
+def test_friction_lets_go_under_a_rising_torque(name, made, monkeypatch):
+    """At the instant at which `simulate` does, from rest and after a standstill."""
+    from fmpy.sundials import CVodeSolver
+
+    rates = CVodeSolver.f
+
+    def with_input(solver, t, y, slopes, data):  # fmpy leaves the inputs as at the last step
+        solver.input.apply(t)
+        return rates(solver, t, y, slopes, data)
+
+    monkeypatch.setattr(CVodeSolver, "f", with_input)
+    theta, omega, times, torques = RAMPS[name]
+    start = {**dict.fromkeys(("F_X", "F_Y", "g_Y"), 0.0), **SLIDER, "theta0": theta, "omega_start": omega}
+    result = fmpy.simulate_fmu(
+        made("torque"), fmi_type="ModelExchange", start_values=start, stop_time=times[-1],
+        input=np.array(list(zip(times, torques, strict=True)), [("time", float), ("torque", float)]),
+        output=["theta", "omega"], relative_tolerance=1e-8,
+    )  # fmt: skip
+    expected = dx.simulate(
+        torque=lambda t: np.interp(t, times, torques), t_end=times[-1], theta0=theta, omega_start=omega,
+        times=result["time"], **SLIDER,
+    )  # fmt: skip
+    assert abs(expected["omega"][-1]) > 1.0
+    np.testing.assert_allclose(result["theta"], expected["theta"], rtol=0, atol=1e-5)
+
+
 def test_states_are_kept_and_set(made):
     one = Instance(made("torque"), "CoSimulation", {"torque": 1.5}).start()
     one.fmu.doStep(0.0, 0.01)

@@ -144,14 +144,16 @@ static double way_of(Values *x) {
   return starts(x, 1.0) ? 1.0 : (starts(x, -1.0) ? -1.0 : 0.0);
 }
 
-/* Event indicators: distances to the limit angles; the speed, or what holds the crank at rest; the loads. */
+/* Event indicators: distances to the limit angles; the speed, or what holds the crank at rest; the loads.
+   An importer's root may lie on the tie itself, from which no further crossing would be seen: an event is due a
+   margin beyond it, so that at the event the decision is clear, and behind it each indicator is > 0. */
 static void indicators(const Values *x, const double state[2], double z[N_EVENTS]) {
   const double first = x->v[FIRST_ANGLE], last = x->v[LAST_ANGLE];
   z[0] = first > -(double)INFINITY ? state[0] - first - EDGE : 1.0;
   z[1] = last < (double)INFINITY ? last - EDGE - state[0] : 1.0;
   if (HAS_STATES) {
     load_indicators(x, state, &z[3]);
-    z[AT_REST] = has_way(x) ? x->way * state[1] : 1.0;
+    z[AT_REST] = has_way(x) ? x->way * state[1] + STANDS : 1.0;
     if (has_way(x) && x->way == 0.0) {
       double ahead, back;
       Values trial = *x;
@@ -159,7 +161,7 @@ static void indicators(const Values *x, const double state[2], double z[N_EVENTS
       const double up = alpha_of(&trial, state, 1.0, &ahead) == 0 ? -ahead : 1.0;
       hold_loads(trial.v, -1.0);
       const double down = alpha_of(&trial, state, -1.0, &back) == 0 ? back : 1.0;
-      z[AT_REST] = up < down ? up : down;
+      z[AT_REST] = (up < down ? up : down) + LETS_GO;
     }
   }
 }

@@ -19,6 +19,7 @@ from .variables import NOMINAL, Variables
 
 EDGE = 1e-9  # rad: so near to a limit angle a motion ends
 STANDS = 1e-12  # rad/s: so slow a crank with friction stands
+LETS_GO = 1e-9  # rad/s^2: so far beyond what friction can hold, a crank at rest is an event
 STRUCTS = """\
 typedef void (*Callback)(void);
 typedef struct {
@@ -100,7 +101,7 @@ def _sizes(table: Variables, made: Programs, token: str) -> list[str]:
         "TORQUE_ROW": _rows(table)[TORQUE], "N_CHECKS": len(_checks(table)), "N_LOADS": len(made.loads),
         "TURNING_LOADS": sum(map(_two_ways, made.loads.values())), "N_LOOKED_UP": len(LOOKED_UP),
         **{name: k for k, name in enumerate(LOOKED_UP) if not name[-1].isdigit()},
-        "EDGE": EDGE, "NOMINAL": NOMINAL, "STANDS": STANDS, "TOKEN": quoted(token),
+        "EDGE": EDGE, "NOMINAL": NOMINAL, "STANDS": STANDS, "LETS_GO": LETS_GO, "TOKEN": quoted(token),
     }  # fmt: skip
     return [f"#define {name} {size}" for name, size in sizes.items()]
 
