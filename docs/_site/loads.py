@@ -50,6 +50,10 @@ CALLS = {
     "peak": lambda load, _: dx.peak("T_in", F_Y=load, **DESIGN),
     "design_map": lambda load, _: dx.design_map([("absmax", "T_in")], F_Y=load, **DESIGN),
     "harmonics": lambda load, _: dx.harmonics("T_in", orders=2, F_Y=load, **DESIGN),
+    "crossings": lambda load, _: dx.crossings("T_in", F_Y=load, **DESIGN),
+    "solve": lambda load, _: dx.solve(
+        over={"AB": (0.03, 0.08)}, where={("absmax", "T_in"): 4.0}, F_Y=load, **_without("AB")
+    ),
     "drive": lambda load, _: dx.drive(F_Y=load, **DESIGN),
     "steady": lambda load, _: dx.steady(torque=MOTOR, I_crank=1.0, F_Y=load, **DESIGN),
     "simulate": lambda load, _: dx.simulate(torque=1.0, t_end=0.01, F_Y=load, **MOVED),

@@ -187,6 +187,8 @@ def test_polar_on_given_axes():
         polar(dataset, "T_in", ax=figure.add_subplot())
     with pytest.raises(ValueError, match="two components of a vector, got 1"):
         polar(dataset, ("T_in",))
+    with pytest.raises(ValueError, match="T_in and V_C are not components of one vector"):
+        polar(dx.grid(["T_in", "V_C"], ec=0.0, **PRESS), ("T_in", "V_C"))
     with pytest.raises(ValueError, match="T_in has no dimension 'theta', it has: ec"):
         polar(dataset.isel(theta=0), "T_in")
 

@@ -292,6 +292,11 @@ def test_a_sweep_of_numbers_alone_is_one_point(tmp_path):
             MemoryError,
             r"takes 1\d\d kB .* 100 kB are allowed",
         ),
+        (
+            {"memory": "200", "theta": np.linspace(0.0, 6.0, 100_000)},
+            MemoryError,
+            "200 bytes make .* chunks of . points",
+        ),
         ({"theta": []}, ValueError, "theta: a sweep needs at least one value"),
         ({"chunks": {"omega0": 2}}, ValueError, "'omega0' is not a dimension"),
         ({"client": "tcp://nowhere"}, TypeError, "expected a distributed.Client"),

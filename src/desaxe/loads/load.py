@@ -44,6 +44,14 @@ class Load(ABC):
     centre = ""  # the dead centre from which positions are measured: the name of its position
     unit: str | None = None
     __call__: Callable[..., Any]  # the load at angles, or at positions and ways
+    if TYPE_CHECKING:  # from `arithmetic`
+
+        def __add__(self, other: Any) -> "Load": ...
+        def __sub__(self, other: Any) -> "Load": ...
+        def __mul__(self, other: Any) -> "Load": ...
+
+        __radd__ = __rsub__ = __add__
+        __rmul__ = __mul__
     plain: tuple[str, ...] = ()
     numbers: Mapping[str, float] = MappingProxyType({})  # of a spring or damper: motions differ by them
     shown_in: "UnitSystem | None" = None  # of the machine that made it, in which it is called and shown

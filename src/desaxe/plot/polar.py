@@ -62,6 +62,10 @@ def _magnitude(parts: "list[xr.DataArray]") -> "xr.DataArray":
     if len(parts) != 2:
         raise ValueError(f"name: one quantity or the two components of a vector, got {len(parts)}")
     first, second = parts
+    if first.attrs.get("units") != second.attrs.get("units"):
+        raise ValueError(
+            f"name: {first.name} and {second.name} are not components of one vector: their units differ"
+        )
     meaning = str(first.attrs.get("long_name", "")).removesuffix(" along X")
     attributes = {"units": first.attrs.get("units", ""), "long_name": f"magnitude of the {meaning}"}
     length: Any = np.hypot(first, second)

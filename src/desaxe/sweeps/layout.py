@@ -13,6 +13,7 @@ DEFAULT_MEMORY = 256_000_000  # bytes of the chunks in flight
 IN_FLIGHT = 2  # chunks at once that an automatic layout leaves memory for
 STORED = 2**21  # points of a stored chunk: 16 MiB of doubles
 REDUCED = 2**23  # points of the grid behind a chunk of a reduced one
+MOST_CHUNKS, FEWEST_POINTS = 10_000, 1_000  # beyond these the memory allowed is a slip: a file a chunk
 WRITING = 3 * 8  # bytes a point while an array is written: copied, compressed, and masked
 
 
@@ -77,4 +78,10 @@ def layout_of(
     points = min(most, (memory or DEFAULT_MEMORY) // (IN_FLIGHT * per_point))
     if points < 1:
         raise MemoryError(f"memory = {memory} bytes: a single point takes {IN_FLIGHT * per_point}")
-    return Layout(dict(sizes), uniform(chunk_lengths(chunks, sizes, points)), per_point, memory)
+    layout = Layout(dict(sizes), uniform(chunk_lengths(chunks, sizes, points)), per_point, memory)
+    if chunks == "auto" and memory is not None and layout.chunks > MOST_CHUNKS and points < FEWEST_POINTS:
+        raise MemoryError(
+            f"memory: {size_text(memory)} make {layout.chunks} chunks of {points} points, a file each; "
+            'give more, such as "100 MB"'
+        )
+    return layout
