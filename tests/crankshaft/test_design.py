@@ -1,9 +1,12 @@
 """Tolerances, optima and pictures of crankshafts."""
 
+import json
+
 import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe.cli.command import main
 from tests.crankshaft.test_sums import CYLINDER
 
 ONE = dx.Machine(**CYLINDER | {"ec": 0.0}, omega0=200.0, units="deg")
@@ -56,6 +59,9 @@ def test_pictures_of_each_slider_and_of_a_star():
     star = THREE.replace(**{"phase[1]": 120, "phase[2]": 240}).plot.star("F_inertia_Y", order=1)
     assert len(star.artists) == 3
     assert star.axes.get_title(loc="left") == "F_inertia_Y, order 1; sum 0"
+    spaced = dx.Crankshaft(ONE, phase=[0, 110, 250], bank=[0, 20, 0], spacing=0.1)
+    couple = spaced.harmonics("C_inertia_Y")["amplitude"][1]
+    assert f"sum {couple:.4g} N m" in spaced.plot.star("C_inertia_Y", order=1).axes.get_title(loc="left")
     with pytest.raises(ValueError, match=r"order = 0.5: there are \[0, 1\]"):
         THREE.plot.star("F_inertia_Y", order=0.5)
 
@@ -102,6 +108,9 @@ def test_a_crankshaft_from_a_scene_file(tmp_path):
     file.write_text(SCENE, encoding="utf-8")
     one = dx.Machine(units="mm, deg", AB=45, BC=150, ec=4, omega0="3000 rpm", m_slider=0.4, F_Y=-50)
     assert dx.Crankshaft.read(file) == dx.Crankshaft(one, phase=[0, 120, 240], bank=30, spacing=90)
+    assert dx.Crankshaft.read(file, units="m, rad")["sliders"].members[1].phase == pytest.approx(
+        2 * np.pi / 3
+    )
     for text, message in (
         (SCENE.partition("[crankshaft]")[0], r"no table \[crankshaft\]"),
         (SCENE.replace("phase =", "phases ="), "no input 'phases'; did you mean phase"),
@@ -110,3 +119,41 @@ def test_a_crankshaft_from_a_scene_file(tmp_path):
         file.write_text(text, encoding="utf-8")
         with pytest.raises((TypeError, ValueError), match=message):
             dx.Crankshaft.read(file)
+
+
+STEADY = (
+    "[steady]\ntorque = { kloss = { breakdown_torque = 40, breakdown_slip = 0.15, synchronous_speed = 150 } }"
+)
+
+
+def test_calls_of_a_crankshaft_on_the_command_line(tmp_path, capsys):
+    file = tmp_path / "three.toml"
+    file.write_text(SCENE + 'I_shaft = "0.1 kg m2"\n' + STEADY, encoding="utf-8")
+    three = dx.Crankshaft.read(file)
+    motor = three.kloss(40, 0.15, "150 rad/s")
+    for words, key, answer in (
+        ("drive", "torque_rms", three.drive()),
+        ("peak T_in AB[1]=46", "value", three.peak("T_in", **{"AB[1]": 46})),
+        ("harmonics F_shaking_Y orders=3", "amplitude", three.harmonics("F_shaking_Y", orders=3)),
+        ("evaluate C_inertia_Y,a_C[2] theta=30", "C_inertia_Y", three.evaluate(["C_inertia_Y"], theta=30)),
+        ("steady", "omega_mean", three.steady(torque=motor)),
+    ):
+        assert main([*words.split(), "--machine", str(file), "--json"]) == 0
+        assert json.loads(capsys.readouterr().out)[key] == pytest.approx(np.array(answer[key]), rel=1e-12), (
+            words
+        )
+    for words, message in (
+        (["run", str(file)], "several sliders are for desaxe.Crankshaft.read and desaxe CALL --machine FILE"),
+        (["events", "--machine", str(file)], "events is of one slider"),
+    ):
+        assert main(words) != 0
+        assert message in capsys.readouterr().err
+    assert main(["peak", "--help"]) == 0
+    assert "sliders" not in capsys.readouterr().out
+
+
+def test_a_crankshaft_is_printed_with_its_speed():
+    engine = dx.Crankshaft(ONE.replace(units="deg, rpm", omega0=3000), phase=[0, 180], I_shaft=0.2)
+    text = "crankshaft of 2 sliders at 0, 180 deg, omega0 = 3000 rpm, I_shaft = 0.2 kg m^2; slider 0:"
+    assert repr(engine).startswith(text)
+    assert text in engine._repr_html_()

@@ -172,3 +172,58 @@ def test_peaks_are_those_of_samples():
     both = six().peak("M_eff", AB=[0.045, 0.05])
     assert both["value"].shape == (2,)
     assert both["value"][1] == pytest.approx(six().peak("M_eff", AB=0.05)["value"], rel=1e-14)
+
+
+@pytest.mark.parametrize("kind", ["max", "min", "absmax"])
+def test_a_peak_of_what_cancels_is_0(kind):
+    four = engine([0, 180, 180, 0])
+    many = four.peak("F_shaking_X", kind=kind, AB=[0.04, 0.045])
+    for answer in (four.peak("F_shaking_X", kind=kind), {n: many[n] for n in ("value", "gradient")}):
+        assert not np.any(answer["value"])
+        assert not np.any([answer["gradient"][p] for p in ("AB", "BC", "m_rod", "omega0")])
+    near, one = (m.peak("F_shaking_X") for m in (four.replace(**{"phase[1]": 180 + 1e-7}), ONE))
+    assert near["value"] == pytest.approx(np.radians(1e-7) * one["value"], rel=0.2)  # which does not
+
+
+LENGTHS, POSITIONS = {"ec": 4.0, "AB": 45.0, "BC": 150.0}, [100, 150, 200]  # mm
+WAYS = {  # force on the way out and in, at the same positions
+    "pushed in": ([0, 0, 0], [-300, -300, -300]),
+    "both ways": ([-100, -200, -300], [-50, -20, -10]),
+}
+
+
+def standing(theta, out, back):
+    """The torque that holds a slider without mass against its force and the friction of the way, T > 0."""
+    ec, AB, BC = LENGTHS.values()
+    psi = np.arcsin((ec + AB * np.sin(theta)) / BC)
+    Y = AB * np.cos(theta) + BC * np.cos(psi)
+    way = np.sign(-np.sin(theta + psi))  # outward 1
+    F = np.where(way > 0.0, np.interp(Y, POSITIONS, out), np.interp(Y, POSITIONS, back))
+    rod = -F / (np.cos(psi) + np.sign(F) * 0.1 * np.abs(np.sin(psi)) * way)
+    return -1e-3 * AB * rod * np.sin(theta + psi)
+
+
+@pytest.mark.parametrize("loads", WAYS)
+def test_a_drive_under_loads_that_differ_by_the_way(loads, tmp_path):
+    """Starting torque by free bodies at rest, the torque by single machines that are shifted."""
+    out, back = WAYS[loads]
+    one = dx.Machine(**LENGTHS, mu=0.1, omega0=3000, m_slider=0.4, units="mm, deg, rpm, N, kg")
+    one = one.replace(F_Y=one.over_Y(POSITIONS, outward=out, inward=back, kind="linear"))
+    phases = [0, 120, 240]
+    three = dx.Crankshaft(one, phase=phases)
+    theta = np.arange(2.0, 360.0, 7.0)
+    singles = sum(one.evaluate("T_in", theta=theta - phase) for phase in phases)
+    np.testing.assert_allclose(three.evaluate("T_in", theta=theta), singles, rtol=1e-11)
+    drive = three.drive()
+
+    def total(angle):
+        return sum(standing(angle - np.radians(phase), out, back) for phase in phases)
+
+    start = np.radians(drive["theta_start"])
+    assert total(start + np.array([-1e-11, 1e-11])).max() == pytest.approx(drive["starting_torque"], abs=1e-8)
+    assert total(np.linspace(0.0, 2.0 * np.pi, 100_001)).max() <= drive["starting_torque"] + 1e-8
+    if loads == "pushed in":
+        high, low = (three.replace(AB=45 + h).drive()["starting_torque"] for h in (1e-4, -1e-4))
+        slope = (high - low) / 2e-4
+        assert drive["gradient"]["starting_torque"]["AB"] == pytest.approx(slope, rel=1e-5)
+        assert f"{drive['starting_torque']:.6g}" in three.report(tmp_path / "three.md").read_text("utf-8")

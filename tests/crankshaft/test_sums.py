@@ -37,8 +37,8 @@ def crankshaft(name, **more):
     )
 
 
-def truth(name, change=None, state=STATE):
-    """The sums, with inputs changed: {"AB[1]": step, "phase[0]": step, "omega": step, ...}."""
+def truth(name, change=None, state=STATE, only=slice(None)):
+    """The sums, with inputs changed: {"AB[1]": step, "phase[0]": step, ...}; those of some sliders."""
     change = change or {}
 
     def moved(key, value, k=None):
@@ -52,7 +52,7 @@ def truth(name, change=None, state=STATE):
         sliders.append(TrueSlider(own, *angles, position, lambda t: -900 * mp.sin(t / 2) ** 4, turns))
     g = mp.mpc(moved("g_Y", GRAVITY["g_Y"]), moved("g_X", GRAVITY["g_X"]))
     at = [moved(n, state[n]) for n in ("theta", "omega", "alpha")]
-    return shaft(sliders, *at, g, moved("I_shaft", I_SHAFT))
+    return shaft(sliders[only], *at, g, moved("I_shaft", I_SHAFT))
 
 
 def near(value, expected, size=0.0, tolerance=1e-12):
@@ -66,6 +66,17 @@ def test_every_sum(name):
     answer = crankshaft(name).evaluate([*expected], **STATE)
     for quantity, value in expected.items():
         assert near(answer[quantity], value, 1.0), quantity
+
+
+@pytest.mark.parametrize("name", SHAFTS)
+def test_what_each_slider_adds_to_a_couple(name):
+    count = len(SHAFTS[name][0])
+    answer = crankshaft(name).evaluate([f"C_inertia_{n}[{k}]" for n in "XY" for k in range(count)], **STATE)
+    with mp.workdps(DIGITS):
+        for k in range(count):
+            alone = truth(name, only=slice(k, k + 1))
+            for n in ("C_inertia_X", "C_inertia_Y"):
+                assert near(answer[f"{n}[{k}]"], alone[n], 1.0), (n, k)
 
 
 INPUTS = (

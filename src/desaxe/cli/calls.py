@@ -93,7 +93,9 @@ def _help(name: str, example: str) -> str:
     from inspect import Parameter, signature
 
     every = signature(_function(SAME.get(name, name))).parameters.values()
-    options = [p.name for p in every if p.kind is Parameter.KEYWORD_ONLY and p.name not in INPUTS]
+    options = [
+        p.name for p in every if p.kind is Parameter.KEYWORD_ONLY and p.name not in (*INPUTS, "sliders")
+    ]
     loads = [f"{load:8} {INPUTS[load].meaning}" for load in LOADS]
     facts = {"OPTIONS": ", ".join(options) or "none", "LOADS": loads, "SIGNS": SIGNS}
     return filled(file_text(__package__, "help", "call.txt"), **facts, EXAMPLE=f"desaxe {name} {example}")
@@ -132,7 +134,8 @@ def _answer(call: str, machine: Any, quantities: list[Any], arguments: dict[str,
         answer = machine.evaluate(list(dict.fromkeys([*names, "status"])), **arguments)
     except TypeError:
         answer = machine.evaluate(names, **arguments)
-    warn_that_nothing_acts(names, given)
+    if "sliders" not in given:
+        warn_that_nothing_acts(names, given)
     return answer
 
 
@@ -169,15 +172,18 @@ def _machine(options: argparse.Namespace, arguments: dict[str, Any]) -> tuple[An
     """
     if options.call == "evaluate" and options.machine is None and options.units is None:
         return import_module("desaxe"), arguments
+    from ..machine.crankshaft import Crankshaft
     from ..machine.machine import Machine
     from ..machine.methods import NOT_FILLED, OF_RANGES
     from ..mechanism.ranges import between
+    from ..scenes.reading.read import plain_data
 
     if options.machine is None:
         machine = Machine(units=options.units)
     else:
-        machine = Machine.read(options.machine, units=options.units)
-        arguments = {**_motor(options, arguments), **arguments}
+        kind = Crankshaft if "crankshaft" in plain_data(options.machine) else Machine
+        machine = kind.read(options.machine, units=options.units)
+        arguments = {**_motor(options, arguments, "sliders" in machine), **arguments}
     if options.call in OF_RANGES:
         pairs = [name for name, value in arguments.items() if name in INPUTS and type(value) is tuple]
         arguments |= {name: between(*arguments[name]) for name in pairs}
@@ -208,23 +214,27 @@ def _quantities(call: str, names: list[str]) -> list[Any]:
     return [measures if first.name == "names" else measures[0]] if names else []
 
 
-def _motor(options: argparse.Namespace, arguments: Mapping[str, Any]) -> dict[str, Any]:
+def _motor(options: argparse.Namespace, arguments: Mapping[str, Any], several: bool) -> dict[str, Any]:
     """The [steady] of the scene, for the calls that ask for a torque; a flywheel is of `steady` alone.
 
     A flywheel or a fluctuation among the arguments stands for both of the scene's: each asks for the other.
     """
+    from ..machine.crankshaft import content_of_shaft
     from ..scenes.parts.motor import ROWS
     from ..scenes.scene import scene
 
-    steady = scene(options.machine).content.steady if options.call in ("steady", "simulate") else None
+    if options.call not in ("steady", "simulate"):
+        return {}
+    content = content_of_shaft(options.machine)[0] if several else scene(options.machine).content
+    steady = content.steady
     if steady is None:
         return {}
     if options.call == "simulate" or any(name in arguments for name in ROWS):
         return {"torque": steady.torque}
-    several = [name for name in steady.axes if name not in arguments]
-    wheel = next((name for name in several if name in ROWS), None)
-    if wheel is not None and len(several) > 1:
-        lists = " and ".join(several)
+    open_axes = [name for name in steady.axes if name not in arguments]
+    wheel = next((name for name in open_axes if name in ROWS), None)
+    if wheel is not None and len(open_axes) > 1:
+        lists = " and ".join(open_axes)
         raise UsageError(
             f"desaxe steady: the scene has lists of {lists}: give {wheel} as NAME=VALUE; "
             "desaxe run computes all of their combinations"

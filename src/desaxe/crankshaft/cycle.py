@@ -17,7 +17,6 @@ from ..support.panels import Array
 from .sums import STATE, SliderSums, indexed
 
 NEAR = 1e-9  # rad: an angle that is an edge
-NOTHING = 1e-12  # beside what a single slider adds
 SAMPLES = 64  # of a turn, for the size of what a slider adds
 
 
@@ -153,9 +152,13 @@ class ShaftTurn(Turn, ShaftCycle):
 
     def floor(self, name: str) -> float:
         """The magnitude of a sum that is rounding beside what a single slider adds."""
-        theta = np.linspace(*self.ends, SAMPLES * self.turns)
-        state = self._motion({})(theta)
-        return NOTHING * self.sliders.largest(name, {**state, "theta": theta})
+        state = {n: v for n, v in self.numbers.items() if n != "sliders"}
+        return float(self.sliders.floor(name, {**state, "theta": self.samples}))
+
+    @property
+    def samples(self) -> Array:
+        """Angles at which the size of what a slider adds is seen."""
+        return np.linspace(*self.ends, SAMPLES * self.turns)
 
 
 def _bases(names: Sequence[str]) -> list[str]:

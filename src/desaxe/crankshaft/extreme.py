@@ -18,37 +18,43 @@ JUMP = 1e-9  # of the largest value: a change at one angle that is a jump
 def extreme_of(turn: ShaftTurn, name: str, kind: str) -> dict[str, Any]:
     """Value, angle, side of a jump, gradient and status of one crankshaft."""
     by = turn.slopes_of(name)
-    nothing = {"value": np.nan, "theta": np.nan, "side": 0, "gradient": dict.fromkeys(by, np.nan)}
+    missing = {"value": np.nan, "theta": np.nan, "side": 0, "gradient": dict.fromkeys(by, np.nan)}
     if turn.margin < 0.0:
-        return {**nothing, "status": int(PeakStatus.CANNOT_BE_ASSEMBLED)}
+        return {**missing, "status": int(PeakStatus.CANNOT_BE_ASSEMBLED)}
     try:
         panels = turn.panels([name])
     except NoCycleError as error:
-        return {**nothing, "status": error.status}
+        return {**missing, "status": error.status}
     tops = [panels.extreme(panels.values[name], sign) for sign in SIGNS[kind]]
     top, theta, inside = max(tops, key=lambda one: abs(one[0]))
     side, slopes = 0, {}
+    nothing = abs(top) <= turn.floor(name)
+    if nothing:  # the sliders cancel, at every angle
+        top, theta, inside = 0.0, turn.ends[0], True
     if inside:
         slopes = {n: values[0] for n, values in turn.values([*by.values()], np.array([theta])).items()}
         gradient = {p: slopes[n] for p, n in by.items()}
+        if nothing:
+            gradient = {p: s if abs(s) > turn.floor(by[p]) else 0.0 for p, s in gradient.items()}
     else:
         side, gradient = _at_edge(turn, name, panels, float(theta), top, by)
     sign = np.sign(top) if kind == "absmax" else 1.0
     value = abs(top) if kind == "absmax" else top
     return {
         "value": float(value), "theta": float(theta), "side": side,
-        "gradient": {p: float(sign * slope) for p, slope in gradient.items()}, "status": 0,
+        "gradient": {p: float(sign * slope) + 0.0 for p, slope in gradient.items()}, "status": 0,
     }  # fmt: skip
 
 
 def extremes_of(
-    turn_of: Callable[[int], ShaftTurn], values: Values, edges: Array, name: str, kind: str
+    turn_of: Callable[[int], ShaftTurn], values: Values, edges: Array, floor: Array, name: str, kind: str
 ) -> dict[str, Any]:
     """Values, angles, sides, gradients and status of many crankshafts at once, as arrays.
 
     turn_of  the turn of one of them, for extremes between panels and angles without a value
     values   quantities at angles of the crankshafts `row`
     edges    a row for each, NaN in empty places
+    floor    the magnitude of each that is rounding
     """
     panels = resolved(lambda theta, row: values([name], theta, row), edges)
     row, nodes = np.arange(len(edges)), panels.values[name]
@@ -65,7 +71,7 @@ def extremes_of(
         "side": np.zeros(row.size, np.int8), "status": np.zeros(row.size, np.int8),
     }  # fmt: skip
     gradient = {p: sign * slopes[n] for p, n in by.items()}
-    for k in np.flatnonzero(~(known & inside)).tolist():
+    for k in np.flatnonzero(~(known & inside & (np.abs(top) > floor))).tolist():
         one = extreme_of(turn_of(k), name, kind)
         for key, column in found.items():
             column[k] = one[key]

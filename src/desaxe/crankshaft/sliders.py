@@ -61,12 +61,15 @@ class Sliders(SliderSums):
                 raise ValueError("peak: an empty array; expected at least one crankshaft")
             if not shape:
                 return Answer(extreme_of(turn_of(0), name, kind), partial(units_of_extreme, name), PeakStatus)
-            first = np.array(turn_of(0).ends) if self.smooth else None
+            turn = turn_of(0)
+            first = np.array(turn.ends) if self.smooth else None
             each = [turn_of(k).edges([name]) if first is None else first for k in range(size)]
             edges = np.full((size, max(map(len, each))), np.nan)
             for k, own in enumerate(each):
                 edges[k, : len(own)] = own
-            found = _shaped(extremes_of(turn_of, values, edges, name, kind), shape)
+            columns = {n: r[:, None] for n, r in rows.items()}
+            floor = self.floor(name, {**given, **columns, "theta": turn.samples})
+            found = _shaped(extremes_of(turn_of, values, edges, floor, name, kind), shape)
             return Answer(found, partial(units_of_extreme, name), PeakStatus)
 
     def motion(self, ask: Ask, given: Mapping[str, Any], starts: Mapping[str, Any], times: Any) -> Simulation:

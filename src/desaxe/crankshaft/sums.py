@@ -41,6 +41,7 @@ FACTS = ("omega", "status", "margin")
 INDEXED = pattern(r"(\w+)\[(\d+)\]")
 SHAFT = -1  # in place of a slider's index: a slider without masses, whose crank is the shaft
 BARE: dict[str, Any] = {"ec": 0.0, "AB": 1.0, "BC": 3.0}
+NOTHING = 1e-12  # beside what a single slider adds
 TINY = 1e-150  # rad/s, in place of rest: slopes by omega^2 stay finite
 
 
@@ -294,13 +295,15 @@ class SliderSums:
         members = range(len(self.members))
         if index is not None:
             self._check(base, index)
+        if name in COUPLES:  # with an index: what a slider adds to it
+            return {
+                (k, q): share.times(self.members[k].position)
+                for (k, q), share in self._quantity(COUPLES[name]).items()
+                if index in (None, k)
+            }
+        if index is not None:
             quantity(name, True)
             return {(index, name): Share(1.0)}
-        if base in COUPLES:
-            axis = COUPLES[base]
-            return {
-                key: share.times(self.members[key[0]].position) for key, share in self._quantity(axis).items()
-            }
         if base[:-2] in FORCES:
             X, Y = f"{base[:-1]}X", f"{base[:-1]}Y"
             shares = (Share(cos=1.0), Share(sin=1.0 if base == X else -1.0))
@@ -366,15 +369,17 @@ class SliderSums:
             if other in inputs and has(by, True):
                 yield by, share.times(side * inputs[other])
 
-    def largest(self, name: str, given: Mapping[str, Any]) -> float:
-        """The largest magnitude of what one slider adds to a quantity at these states."""
-        state, sizes = state_of(given), [0.0]
-        for k, q in self.terms(name, state.slopes):
+    def floor(self, name: str, given: Mapping[str, Any]) -> Any:
+        """The magnitude of a sum that is rounding beside what one slider adds; theta is the last axis."""
+        state, size = state_of(given), 0.0
+        here = self.replaced({n: v for n, v in given.items() if n not in STATE})
+        for k, q in here.terms(name, state.slopes):
             if k != SHAFT:
-                angle = state.theta - self.members[k].firing
-                own = evaluate(q, theta=angle, **self.inputs_of(k), **state.inputs)
-                sizes.append(float(np.nanmax(np.abs(own))))
-        return max(sizes)
+                angle = state.theta - here.members[k].firing
+                own = evaluate(q, theta=angle, **here.inputs_of(k), **state.inputs)
+                every = np.broadcast_to(own, np.broadcast_shapes(np.shape(own), np.shape(angle)))
+                size = np.fmax(size, np.fmax.reduce(np.abs(every), axis=-1))
+        return NOTHING * size
 
 
 def _moved(member: ShaftSlider, name: str, value: Any) -> ShaftSlider:

@@ -76,7 +76,7 @@ def evaluate(
     quality  True: for each name, in place of the value, an object with `value`, `conditions` (input ->
              |input/value d value/d input|), `error_bound` (of the rounding) and `digits`; loads are
              numbers or tables then
-    sliders  those of a `Crankshaft`, whose sums and single sliders the names are
+    sliders  filled in by a `Crankshaft`, whose sums and single sliders the names are
 
     Labelled arrays (xarray) broadcast by the names of their dimensions, and labelled arrays come back.
     Inputs that the names do not need may be left out; masses and loads are 0 without. A number may

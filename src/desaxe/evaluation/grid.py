@@ -89,7 +89,7 @@ def grid(
 
     A pandas Series whose index has a name varies along that index: Series of one index belong together.
 
-    `sliders` are those of a `Crankshaft`: without `reduce`, `chunks` and `out`.
+    `sliders` are filled in by a `Crankshaft`: without `reduce`, `chunks` and `out`.
 
         dx.grid(["a_C"], theta=th, ec=ecs, AB=.125, BC=bcs, omega0=157.08).a_C.max("theta")
 

@@ -1,6 +1,7 @@
 """`Crankshaft`: several sliders on one crankshaft, as a machine with every public call."""
 
 from collections.abc import Mapping, Sequence
+from html import escape
 from os import PathLike
 from typing import Any
 
@@ -15,15 +16,17 @@ from ..mechanism.messages import errors_in, listed, named
 from ..mechanism.quantity_units import UnitSystem
 from ..mechanism.read import read, read_array
 from ..runtime.request import MachineSpeed
+from ..scenes.content import Content
 from ..support.files import as_path
 from ..support.forks import IMPORTS
+from ..support.shown import with_unit
 from ..support.toml import read_toml
 from .arguments import in_si
 from .machine import Machine, checked_inputs, restored
 from .scenes import inputs_of_content
 
 ANGLES = ("phase", "bank", "firing", "spacing", "position", "I_shaft")
-RESULTS = ("outputs", "reduce", "peak", "check", "picture", "steady", "results")  # of a scene
+RESULTS = ("outputs", "reduce", "peak", "check", "picture", "results")  # of a scene
 SAME = 1e-9  # rad: a firing that is at its phase and bank
 
 
@@ -108,21 +111,10 @@ class Crankshaft(Machine):
         The table has phase, bank, firing, spacing or position, I_shaft as they are given here; the other
         tables are those of one slider. Other results that the file asks for are left out.
         """
-        with IMPORTS:
-            from ..scenes.reading.read import read as read_scene
-
-        file = as_path("path", path)
-        data = read_toml(file)
-        table = data.pop("crankshaft", None)
-        if not isinstance(table, dict):
-            raise ValueError(f"{file}: there is no table [crankshaft]; Machine.read reads one slider")
-        check_inputs("[crankshaft]", table, ANGLES)
-        if "phase" not in table:
-            raise TypeError(f"{file}: phase is missing in [crankshaft]")
-        design = {key: value for key, value in data.items() if key not in RESULTS}
-        content = read_scene({**design, "outputs": ["stroke"]}, file.parent)
+        content, table = content_of_shaft(path)
         inputs, system, made = inputs_of_content(content)
-        return cls(restored(checked_inputs(inputs), system, {}, made), units=units, **table)
+        shaft = cls(restored(checked_inputs(inputs), system, {}, made), **table)
+        return shaft if units is None else shaft.replace(units=units)
 
     def _fill(self, inputs: dict[str, Any], units: UnitSystem) -> "Crankshaft":
         """Fill a new crankshaft."""
@@ -185,10 +177,37 @@ class Crankshaft(Machine):
         return frozenset([self.members, angles, speeds, sliders.I_shaft])
 
     def __repr__(self) -> str:
-        return f"crankshaft of {self['sliders']!r}; slider 0:\n{self.members[0]!r}"
+        return f"{self._title()}\n{self.members[0]!r}"
 
     def _repr_html_(self) -> str:
-        return f"<p>crankshaft of {self['sliders']!r}; slider 0:</p>{self.members[0]._repr_html_()}"
+        return f"<p>{escape(self._title())}</p>{self.members[0]._repr_html_()}"
+
+    def _title(self) -> str:
+        """How many sliders at which phases, the speed, and what slider is printed below."""
+        values = {n: self.get(n) for n in STATE[1:]} | {"I_shaft": self["sliders"].I_shaft or None}
+        facts = [
+            f"{n} = " + with_unit(f"{self.units.of(n).shown(value):.6g}", self.units.of(n).unit)
+            for n, value in values.items()
+            if value is not None
+        ]
+        return ", ".join([f"crankshaft of {self['sliders']!r}", *facts]) + "; slider 0:"
+
+
+def content_of_shaft(path: str | PathLike[str]) -> tuple[Content, dict[str, Any]]:
+    """The scene of one slider without its results, and the table [crankshaft] of its file."""
+    with IMPORTS:
+        from ..scenes.reading.read import read as read_scene
+
+    file = as_path("path", path)
+    data = read_toml(file)
+    table = data.pop("crankshaft", None)
+    if not isinstance(table, dict):
+        raise ValueError(f"{file}: there is no table [crankshaft]; Machine.read reads one slider")
+    check_inputs("[crankshaft]", table, ANGLES)
+    if "phase" not in table:
+        raise TypeError(f"{file}: phase is missing in [crankshaft]")
+    design = {key: value for key, value in data.items() if key not in RESULTS}
+    return read_scene({**design, "outputs": ["stroke"]}, file.parent), table
 
 
 def _restored(inputs: dict[str, Any], units: UnitSystem) -> Crankshaft:

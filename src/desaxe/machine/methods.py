@@ -114,6 +114,8 @@ def _signature(own: Signature, name: str) -> Signature:
     for parameter in own.parameters.values():
         if parameter.name in NOT_FILLED.get(name, ()) and parameter.kind is not Parameter.KEYWORD_ONLY:
             continue
+        if parameter.name == "sliders":  # which a crankshaft fills in
+            continue
         given = parameter.kind is Parameter.KEYWORD_ONLY and parameter.name in (
             *FILLED,
             "stroke",

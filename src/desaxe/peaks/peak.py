@@ -62,7 +62,7 @@ def peak(
     others  as in `evaluate`, masses and loads among them. F_X and F_Y may vary with the motion; at a jump
             both one-sided limits count, at an end of the range that from within and the value itself.
             `gradient` by such a force is that by a constant added to it
-    sliders those of a `Crankshaft`
+    sliders filled in by a `Crankshaft`
 
     Returns a dict, floats for one design and arrays for many:
 

@@ -391,6 +391,8 @@ def _wrong_keys(value: Mapping[str, Any], struct: type[Struct], key: str) -> str
         if name not in names:
             home = INPUTS[name].section if name in INPUTS else ""
             told = f"{name} belongs in [{home}]" if home else hint(str(name), names)
+            if _dotted(key, name) == "crankshaft":
+                told = "several sliders are for desaxe.Crankshaft.read and desaxe CALL --machine FILE"
             return f"{_dotted(key, name)} = {shown(value[name])}: unknown key; {told}"
     for field in fields:
         if field.required and field.name not in value:

@@ -34,7 +34,7 @@ def drive(
     fluctuation  (fastest - slowest)/mean speed that a flywheel is to keep under a constant torque: 0.1 or
                  "10 %"
     reverse      True: the starting torque is that for either way of turning
-    sliders      those of a `Crankshaft`
+    sliders      filled in by a `Crankshaft`
     inputs       of one design with masses and loads, as in `evaluate`. omega0 is the speed of the crank; with
                  alpha it is that at theta = 0, and the turn is the first one. F_X and F_Y may vary
                  with the motion, over one turn or up to four: all figures are then of these

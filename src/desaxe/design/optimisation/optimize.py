@@ -45,7 +45,7 @@ def optimize(
     keep                dict of the same names -> (low, high), None where there is no limit, or ("==", value).
                         The crank always turns fully: margin >= 0
     fixed               all other parameters, as in `evaluate`; F_X and F_Y may vary with the motion
-    sliders             those of a `Crankshaft` of one machine, whose phases and banks may vary, too
+    sliders             filled in by a `Crankshaft` of one machine, whose phases and banks may vary, too
     starts, seed        how many local searches, from the best of a scan of the space
     timeout             seconds after which it ends with a TimeoutError; None for no limit
     points              designs along a Pareto front (to the power of the objectives less one)

@@ -50,7 +50,7 @@ def steady(
                       `over_theta`, or a number, which fixes a speed only where the guide has friction
     flywheel_inertia  added to the crank [kg m2]
     fluctuation       the smallest flywheel that keeps this one is found instead
-    sliders           those of a `Crankshaft`, without friction
+    sliders           filled in by a `Crankshaft`, without friction
     inputs            lengths, masses, loads as in `evaluate`; F_X and F_Y may vary with the motion, over up
                       to four turns. omega0 only says which way the crank turns, if the motor does not
 

@@ -54,7 +54,7 @@ def tolerance(
                   scipy.stats, frozen. F_X and F_Y may vary with the motion
     distribution  within a tolerance: "normal", the tolerance being that many `sigmas`, or "uniform"
     samples       of the Monte Carlo, by default 100000, or 10000 of a peak, 1000 of several sliders
-    sliders       those of a `Crankshaft`, of which a quantity at a crank angle or a peak is asked for
+    sliders       filled in by a `Crankshaft`, of which a quantity at a crank angle or a peak is asked for
 
     Returns a dict that prints three lines: the value, its spread, what drives it; `report()` has all:
 

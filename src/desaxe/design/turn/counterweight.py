@@ -50,8 +50,8 @@ def counterweight(
     radius  of the counterweight's centre of mass [m], to compute its mass
     loads   False: of F_inertia, what moving masses do to the foundation; True: of F_shaking, with loads that
             come from outside of the machine, unlike gas in a cylinder
-    sliders those of a `Crankshaft`: its weight is on the shaft, from the direction of the crank of a slider
-            at phase = 0, and `throws` has the one of each slider's own crank
+    sliders filled in by a `Crankshaft`: its weight is on the shaft, from the direction of the crank of a
+            slider at phase = 0, and `throws` has the one of each slider's own crank
     inputs  of one design at constant speed, with masses, as in `evaluate`
 
     Returns a dict:

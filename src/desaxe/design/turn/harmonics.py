@@ -26,7 +26,7 @@ def harmonics(
     name    any quantity or sensitivity, such as "F_shaking_Y", "T_in" or "a_C"
     orders  the highest harmonic
     inputs  of one design, as in `evaluate`; F_X and F_Y may vary with the motion, and repeat after n turns
-    sliders those of a `Crankshaft`; what its sliders cancel to rounding is 0
+    sliders filled in by a `Crankshaft`; what its sliders cancel to rounding is 0
 
     Returns a dict; the quantity is mean + sum over orders n > 0 of cos cos(n theta) + sin sin(n theta):
 
@@ -59,7 +59,7 @@ def harmonics(
     c, remainder = _series(panels, panels.values[name], turn.turns, order.size)
     c[np.abs(c) <= turn.floor(name)] = 0.0
     scale = np.where(order == 0, 1.0, 2.0)
-    cosine, sine = scale * c.real, -scale * c.imag
+    cosine, sine = scale * c.real, 0.0 - scale * c.imag
     series: dict[str, Any] = {
         "order": order if turn.turns == 1 else order / turn.turns,
         "cos": cosine,

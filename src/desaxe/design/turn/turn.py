@@ -139,7 +139,7 @@ def _number(caller: str, name: str, value: Any) -> float:
 
 def check_range(caller: str, name: str, number: float) -> float:
     """The number; ValueError beyond WIDEST."""
-    if name != "theta" and number != 0.0 and not 1.0 / WIDEST <= abs(number) <= WIDEST:
+    if name != "theta" and abs(number) not in (0.0, CREEP) and not 1.0 / WIDEST <= abs(number) <= WIDEST:
         limit = f"{caller} takes 0 and magnitudes from {1.0 / WIDEST:g} to {WIDEST:g}"
         raise ValueError(named(name, number, "g") + f": {limit}")
     return number
