@@ -183,7 +183,7 @@ class Crankshaft(Machine):
         return f"<p>{escape(self._title())}</p>{self.members[0]._repr_html_()}"
 
     def _title(self) -> str:
-        """How many sliders at which phases, the speed, and what slider is printed below."""
+        """The sliders, their phases, the speed and I_shaft, in a line."""
         values = {n: self.get(n) for n in STATE[1:]} | {"I_shaft": self["sliders"].I_shaft or None}
         facts = [
             f"{n} = " + with_unit(f"{self.units.of(n).shown(value):.6g}", self.units.of(n).unit)
