@@ -1,5 +1,7 @@
 """Loads as they are called, shown and drawn: in the units of the machine that made them, the curve itself."""
 
+import re
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -7,6 +9,7 @@ import pytest
 import desaxe as dx
 
 PRESS = dx.Machine(ec=15, AB=75, BC=300, omega0=60, m_slider=120, units="mm, deg, rpm, kN")
+PUMP = PRESS.replace(units="mm, deg, rpm")
 DIE = PRESS.over_Y([200, 366, 380], outward=[0, -80, -80], inward=[0, 10, 0], kind="step")
 SPLINE = PRESS.over_theta([0, 90, 180, 270], [0, -4, -0.5, 0])
 
@@ -46,6 +49,24 @@ def test_the_range_of_a_load_is_that_of_its_curve():
     assert repr(DIE) == "<load over Y: 3 points, step, -80 to 0 kN, inward 0 to 10 kN>"
     assert f"F_Y         over theta, {low:.4g} to {high:.4g} kN  force" in repr(PRESS.replace(F_Y=SPLINE))
     assert "F_Y         over Y, -80 to 10 kN  force" in repr(PRESS.replace(F_Y=DIE))
+
+
+@pytest.mark.parametrize(
+    "load",
+    [
+        PUMP.over_Y([200, 380], ["1 bar", "9 bar"], bore=30, ambient="1 bar"),
+        -1 * PUMP.over_Y([200, 380], [0, 4]),
+        PUMP.over_theta([0, 90, 180], [-0.0, -4, -1], kind="linear"),
+    ],
+    ids=["pressure", "multiple", "written"],
+)
+def test_a_zero_has_no_sign(load, tmp_path):
+    press = PUMP.replace(F_Y=load)
+    page = press.report(tmp_path / "press.md", outputs="Y").read_text(encoding="utf-8")
+    scene = press.to_scene(tmp_path / "press.toml", outputs="Y").read_text(encoding="utf-8")
+    for text in (repr(load), repr(press), page, scene):
+        assert not re.search(r"-0(\.0)?(?![\d.])", text.replace("1e-0", ""))
+    assert dx.Machine.read(tmp_path / "press.toml")["F_Y"] == load
 
 
 def test_a_load_is_drawn_as_it_is_computed_with():

@@ -32,7 +32,7 @@ class Piston:
 
     def force(self, pressure: Any) -> Any:
         """The force along Y of a pressure [Pa]."""
-        return -(pressure - self.ambient) * self.area
+        return (self.ambient - pressure) * self.area
 
     def functions(self, function: Any, derivative: Any) -> tuple[Any, Any]:
         """A function that returns pressures [Pa], and its derivative, as ones of forces."""
@@ -72,7 +72,7 @@ class ForceOfPressure:
 
     def __call__(self, at: Any) -> Any:
         """The force, or its derivative."""
-        return -(self.function(at) - self.ambient) * self.area
+        return (self.ambient - self.function(at)) * self.area
 
 
 def piston_of(name: str, area: Any, bore: Any, ambient: Any, units: UnitSystem | None) -> Piston | None:

@@ -102,8 +102,8 @@ class Table:
 
     @property
     def values(self) -> tuple[float, ...]:
-        """The value at each knot, that to the right at a jump."""
-        return tuple(row[0] for row in self.rows[1:])
+        """The value at each knot, that to the right at a jump; no zero has a sign."""
+        return tuple(row[0] + 0.0 for row in self.rows[1:])
 
     @computed_once
     def jumps_at_points(self) -> bool:
@@ -117,7 +117,7 @@ class Table:
         ends = (*self.knots[1:], self.knots[0] + self.period) if self.period is not None else self.knots[1:]
         for row, left, right in zip(self.rows[1:], self.knots, ends, strict=False):
             found += [polynomial(row, s)[0] for s in _flat_points(row) if 0.0 < s < right - left]
-        return min(found), max(found)
+        return min(found) + 0.0, max(found) + 0.0
 
     @computed_once
     def kinks(self) -> tuple[float, ...]:
