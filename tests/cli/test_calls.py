@@ -180,6 +180,9 @@ COMPLAINTS = {
     f"steady {LENGTHS}": "desaxe steady: missing torque; each is given as NAME=VALUE, the torque also by",
     "drive ec=0,0.01 AB=1 BC=3 omega0=1": "drive expects one number, for one design: give one, as NAME=VALUE",
     f"tolerance stroke {LENGTHS}": 'give one as "NAME=VALUE +- TOLERANCE"',
+    f"solve stroke=100mm {LENGTHS}": "desaxe solve: missing over; each is given as over.AB=LOW:HIGH",
+    "solve over.AB=10mm:60mm absmax:T_in=1750": "absmax:T_in: a measure is given as where.absmax:T_in=VALUE",
+    "optimize over.AB=0:1 absmax:a_C=3": "given as keep.absmax:a_C=LOW:HIGH, or minimize=absmax:a_C",
     "optimize over.ec=0:1 over=2": "over=2: over has a value already",
     "events -o values.txt": "-o values.txt: its name must end in .json, .csv",
 }

@@ -85,7 +85,8 @@ def test_the_page_has_table_and_picture(tmp_path, capsys):
     place = tmp_path / "press.toml"
     place.write_text(
         'title = "Press"\n[mechanism]\nAB = 0.05\nBC = 0.2\nec = 0.01\n[masses]\nm_slider = 20\nI_crank = 2\n'
-        '[steady]\ntorque = { over_omega = [["0 rpm", 300], ["130 rpm", -100]] }\n'
+        '[motion]\nomega0 = 13\n[steady]\ntorque = { over_omega = [["0 rpm", 300], ["130 rpm", -100]] }\n'
+        "fluctuation = 0.02\n"
     )
     assert main(["run", str(place), "--report", str(tmp_path / "press.md")]) == 0
     assert "Steady state" in capsys.readouterr().out
@@ -93,6 +94,7 @@ def test_the_page_has_table_and_picture(tmp_path, capsys):
     assert "## Steady state" in page
     assert "| omega_mean \\[rad/s\\] |" in page
     assert "its loop on the motor's curve" in page
+    assert "for a fluctuation of 2 %" in page
     plan = dx.explain(str(place))
     assert any(one["what"] == "steady state on a motor" for one in plan["also"])
 

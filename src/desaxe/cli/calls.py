@@ -65,6 +65,7 @@ CALLS = {
 }
 SAME = {"point": "evaluate"}
 MISSING = re.compile(r"(\w+)\(\) missing \d+ required keyword-only arguments?: (.*)")
+OF_MEASURES = {"solve": "where.{}=VALUE", "optimize": "keep.{0}=LOW:HIGH, or minimize={0}, maximize={0}"}
 PLUS_MINUS = "dx.plus_minus(value, tolerance)"
 SCENE = ", the torque also by [steady] of a scene"
 
@@ -112,6 +113,9 @@ def _call(options: argparse.Namespace) -> int:
     if options.file is not None:
         require_target(Path(options.file), options.overwrite)
     names, arguments = arguments_of(options.words)
+    pair = next((name for name in arguments if ":" in name), None)
+    if pair is not None and options.call in OF_MEASURES:
+        raise UsageError(f"{pair}: a measure is given as {OF_MEASURES[options.call].format(pair)}")
     quantities = _quantities(options.call, names)
     machine, arguments = _machine(options, arguments)
     try:
@@ -158,8 +162,9 @@ def _as_words(message: str) -> str:
     missing = MISSING.match(message)
     if missing:
         names = missing[2].replace("'", "")
+        written = "over.AB=LOW:HIGH" if names == "over" else "NAME=VALUE"
         scene = SCENE if "torque" in names else ""
-        return f"desaxe {missing[1]}: missing {names}; each is given as NAME=VALUE{scene}"
+        return f"desaxe {missing[1]}: missing {names}; each is given as {written}{scene}"
     message = message.replace(PLUS_MINUS, '"NAME=VALUE +- TOLERANCE"')
     head, call, _ = message.partition("; call it for each of them")
     return f"{head}: give one, as NAME=VALUE" if call else message

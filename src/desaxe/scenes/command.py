@@ -31,9 +31,10 @@ def run_scene(
         warnings.showwarning(one.message, one.category, one.filename, one.lineno)
     page = None
     if file is not None:
-        page = Page(
-            Path(file), _command(source, overwrite, file, tolerances), tolerances, overwrite=overwrite
-        )
+        command, steady = _command(source, overwrite, file, tolerances), scene.content.steady
+        page = Page(Path(file), command, tolerances, overwrite=overwrite)
+        if steady is not None and "fluctuation" in steady.fixed:
+            page = page._replace(fluctuation=steady.fixed["fluctuation"])
         page = checked(page, scene.content, scene.shown_in, [str(one.message) for one in heard])
     content, steps = scene.content, steps_of(scene.content, None)
     with using(content.definitions):
