@@ -72,7 +72,7 @@ def test_a_kink_between_two_angles():
     found = dx.optimize(minimize=("max", "a_C"), over={"ec": (-0.1, 0.14)}, **A)
     assert found["ec"] == pytest.approx(0.0, abs=1e-6)
     assert (found["status"], found["active"]) == (0, {})
-    assert "at a kink" in found["message"]
+    assert "at a kink of the objective, inside of all limits" in found["message"]
     assert np.isnan(found["multipliers"]["ec"])
 
 

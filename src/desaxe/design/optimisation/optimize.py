@@ -57,8 +57,7 @@ def optimize(
     active       dict of the limits that hold it back: name or parameter -> "lower", "upper" or "equal"
     multipliers  dict name or parameter -> what the objective would gain, per unit, from relaxing its limit:
                  positive, and 0 where the limit does not hold it back. With "equal", what raising the
-                 required value would gain, of either sign. NaN at a kink, where two peaks of one sign share
-                 the extreme value
+                 required value would gain, of either sign. NaN at a kink of the objective
     status       0 an optimum; 1 no design keeps the limits; 2 no optimum: the objective grows without
                  bound towards the limit of turning; 3 the best is at that limit itself, and nearly
                  reached by the design returned; 4 the search did not settle; 5 the objective has no finite

@@ -11,7 +11,6 @@ from ...mechanism.messages import Message, amount, listed
 from ...mechanism.names import LENGTHS
 from ...mechanism.quantity_units import slopes_of, unit_of, units_by_name
 from ...mechanism.status import OptimizeStatus
-from ..averages import AVERAGES
 from ..measures import Measure, checked, text_of
 from .objectives import Goal
 from .problem import EQUAL, LOWER, UPPER, Limit, Space
@@ -119,10 +118,7 @@ def _kink(goal: Goal, found: Candidate) -> str:
     """Why the derivatives do not vanish at an optimum, as text."""
     if found.edge:
         return f", at the edge of the designs where {text_of(goal.measure)} is finite"
-    if not found.kink:
-        return ""
-    peaks = isinstance(goal.measure, tuple) and goal.measure[0] not in AVERAGES
-    return ", at a kink" + (", where two peaks share the extreme value" if peaks else "")
+    return ", at a kink of the objective" if found.kink else ""
 
 
 def _left_out(what: str, search: LocalSearch) -> str:
