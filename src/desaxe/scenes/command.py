@@ -33,8 +33,8 @@ def run_scene(
     if file is not None:
         command, steady = _command(source, overwrite, file, tolerances), scene.content.steady
         page = Page(Path(file), command, tolerances, overwrite=overwrite)
-        if steady is not None and "fluctuation" in steady.fixed:
-            page = page._replace(fluctuation=steady.fixed["fluctuation"])
+        keep = None if steady is None else steady.fixed.get("fluctuation")
+        page = page._replace(fluctuation=keep) if isinstance(keep, float) else page
         page = checked(page, scene.content, scene.shown_in, [str(one.message) for one in heard])
     content, steps = scene.content, steps_of(scene.content, None)
     with using(content.definitions):
