@@ -4,6 +4,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import desaxe as dx
 from tests.loads.truth import slider
@@ -163,6 +164,116 @@ def test_motions_and_steady_states_have_derivatives_by_the_numbers_of_loads(mu):
         for key in ("omega_mean", "fluctuation", "power_mean"):
             slope = (one[key] - other[key]) / (2.0 * h)
             assert turning["gradient"][key][f"F_Y.{name}"] == pytest.approx(slope, rel=1e-4, abs=1e-12), name
+
+
+def back(theta, Y, V):
+    return -80.0 * (Y - 0.1)
+
+
+def oil(theta, Y, V):
+    return -5.0 * V - 0.4 * V * np.abs(V)
+
+
+def slow(theta, Y, V):
+    return np.interp(V, [-0.2, 0.0, 0.3], [4.0, 0.0, -6.0])
+
+
+SPRING, DAMPER, OVER_V = dx.spring(80, "0.1 m"), dx.damper(5, 0.4), dx.over_V([-0.2, 0, 0.3], [4, 0, -6])
+DRAG = dx.over_V(lambda V: -4.0 * V, derivative=lambda V: -4.0 + 0.0 * V)
+OVER_ANGLE = dx.over_theta(lambda theta: 3.0 * np.cos(theta), derivative=lambda theta: -3.0 * np.sin(theta))
+MOVING = {  # load, and what it is at an angle, a position and a speed
+    "spring": (SPRING, back),
+    "damper": (DAMPER, oil),
+    "over_V": (OVER_V, slow),
+    "function of V": (DRAG, lambda theta, Y, V: -4.0 * V),
+    "function of Y and V": (lambda Y, V_C: 30.0 * Y - 3.0 * V_C, lambda theta, Y, V: 30.0 * Y - 3.0 * V),
+    "spring and damper": (SPRING + DAMPER, lambda *now: back(*now) + oil(*now)),
+    "number": (SPRING + 3.0, lambda *now: back(*now) + 3.0),
+    "multiple": (-2 * SPRING, lambda *now: -2.0 * back(*now)),
+    "multiple of a damper": (3 * DAMPER, lambda *now: 3.0 * oil(*now)),
+    "with over_theta": (SPRING + OVER_ANGLE, lambda theta, *now: back(theta, *now) + 3.0 * np.cos(theta)),
+    "damper, over_theta": (DAMPER + OVER_ANGLE, lambda theta, *now: oil(theta, *now) + 3.0 * np.cos(theta)),
+    "with over_Y": (
+        SPRING + dx.over_Y([0.08, 0.12, 0.2], [1, 3, -2]),
+        lambda theta, Y, V: back(theta, Y, V) + np.interp(Y, [0.08, 0.12, 0.2], [1.0, 3.0, -2.0]),
+    ),
+    "with over_stroke": (
+        DAMPER + dx.over_stroke([0, 0.09], [1, -3], dead_centre="outer"),
+        lambda theta, Y, V: oil(theta, Y, V) + np.interp(REACH - Y, [0.0, 0.09], [1.0, -3.0]),
+    ),
+    "with over_V": (DAMPER + OVER_V, lambda *now: oil(*now) + slow(*now)),
+    "functions": (DRAG + SPRING, lambda theta, Y, V: back(theta, Y, V) - 4.0 * V),
+    "many": (
+        2 * (SPRING + DAMPER) + OVER_V + 2.0,
+        lambda *now: 2 * (back(*now) + oil(*now)) + slow(*now) + 2,
+    ),
+}
+TORQUES = {  # and what it is at an instant and a speed
+    "number": (3.0, lambda t, omega: 3.0),
+    "kloss": (dx.kloss(4.0, 0.4, 30.0), lambda t, omega: 8.0 * (u := (1 - omega / 30) / 0.4) / (1 + u * u)),
+    "motor": (
+        dx.over_omega([0, 10, 40], [4, 3, -1]), lambda t, omega: np.interp(omega, [0, 10, 40], [4, 3, -1]),
+    ),
+    "of omega": (lambda omega: 4.0 - 0.2 * omega, lambda t, omega: 4.0 - 0.2 * omega),
+    "of t": (lambda t: 3.0 + np.sin(3.0 * t), lambda t, omega: 3.0 + np.sin(3.0 * t)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("start", [0.0, 12.0])
+@pytest.mark.parametrize("torque", TORQUES)
+@pytest.mark.parametrize("name", MOVING)
+def test_motions_under_loads_along_the_motion(name, torque, start):
+    """Alone, of machine and shaft, with derivatives and a last angle, of designs; values by scipy."""
+    (load, push), (turn, drive) = MOVING[name], TORQUES[torque]
+
+    def rates(t, y):
+        Y, slope, bend = slider(y[0], LENGTHS, 1)
+        work = drive(t, y[1]) + push(y[0], Y, slope * y[1]) * slope
+        return y[1], (work - 2.0 * slope * bend * y[1] ** 2) / (0.05 + 2.0 * slope**2)
+
+    right = solve_ivp(rates, (0.0, 0.2), [0.3, start], "DOP853", rtol=1e-9, atol=1e-9).y[:, -1]
+    run = {"torque": turn, "theta0": 0.3, "omega_start": start, "t_end": 0.2, "times": [0.2]}
+    numbers = [f"F_Y.{number}" for number in getattr(load, "numbers", ())]
+    known = getattr(load, "has_slope", False) and not torque.startswith("of")
+    shaft = dx.Crankshaft(dx.Machine(**LENGTHS, m_slider=2.0, F_Y=load), phase=[0.0], I_shaft=0.05)
+    motions = [
+        dx.simulate(F_Y=load, until=90.5, wrt=["AB", *numbers] if known else (), **run, **DESIGN),
+        dx.Machine(**DESIGN, F_Y=load).simulate(**run),
+        shaft.simulate(**{**run, "theta0": 0.3}),
+    ]
+    for moved in motions:
+        assert [moved["theta"][-1], moved["omega"][-1]] == pytest.approx(right, rel=1e-6)
+    many = dx.simulate(F_Y=load, **run, **{**DESIGN, "AB": [0.04, 0.03]})
+    assert [many["theta"][0, -1], many["omega"][0, -1]] == pytest.approx(right, rel=1e-6)
+    across = dx.simulate(F_X=load, **run, **DESIGN, mu=0.0)
+    free = dx.simulate(**run, **DESIGN)
+    assert across["omega"] == pytest.approx(free["omega"], rel=1e-8)  # the guide takes it
+
+
+def test_derivatives_by_the_numbers_of_loads_are_in_the_units_of_the_machine():
+    """kN/mm, mm, kN s/mm, kN s2/mm2 and rpm; those in SI units are held by differences above."""
+    sizes = {"stiffness": 1e6, "free": 1e-3, "linear": 1e6, "quadratic": 1e9}
+    spelled = {"stiffness": "mm/kN", "free": "1/mm", "linear": "mm/kN/s", "quadratic": "mm^2/kN/s^2"}
+    load, names = loads_of(NUMBERS), [f"F_Y.{name}" for name in NUMBERS]
+    press = dx.Machine(**DESIGN, F_Y=load).replace(units="mm, kN, rpm")
+    motor = dx.over_omega(["0 rad/s", "300 rad/s"], ["120 N m", "-330 N m"])
+    turning, shown = dx.steady(torque=MOTOR, F_Y=load, **DESIGN), press.steady(torque=motor)
+    run = {"t_end": 0.7, "wrt": names, "times": [0.0, 0.7]}
+    moves = dx.simulate(torque=6.0, omega_start=20.0, F_Y=load, **run, **DESIGN)
+    of_press = press.simulate(torque="6 N m", omega_start="20 rad/s", **run)
+    for name, size in sizes.items():
+        by = f"F_Y.{name}"
+        for key, of_key in (("omega_mean", 30.0 / np.pi), ("fluctuation", 1.0)):
+            found = shown["gradient"][key][by]
+            assert found == pytest.approx(turning["gradient"][key][by] * of_key * size, rel=1e-12)
+        assert shown.units["gradient"]["omega_mean"][by] == f"rpm*{spelled[name]}".replace("*1/", "/")
+        for base, of_key in (("theta", 1.0), ("omega", 30.0 / np.pi), ("t_last", 1.0), ("work", 1.0)):
+            key = f"{base}_wrt_{by}"
+            assert of_press[key] == pytest.approx(moves[key] * of_key * size, rel=1e-12)
+        for one, other in zip(of_press["events"], moves["events"], strict=True):
+            assert one.wrt[by] == pytest.approx(other.wrt[by] * size, rel=1e-12)
+    assert moves.units["work_wrt_F_Y.linear"] == "J*m/N/s"
+    assert turning.units["gradient"]["omega_mean"]["F_Y.stiffness"] == "rad*m/s/N"
 
 
 def test_a_drag_takes_its_power():

@@ -285,8 +285,8 @@ class Spring(OfMotion):
     def told(self, conversion: Any = None) -> str:
         """The spring in a line."""
         units = self.shown_in or SI
-        force, length = units.of("F_Y"), units.of("Y")
-        return f"<spring: {_told(self.stiffness, force.per([length]))}, free at {_told(self.free, length)}>"
+        stiffness, free = (_told(x, units.of(f"F_Y.{name}")) for name, x in self.numbers.items())
+        return f"<spring: {stiffness}, free at {free}>"
 
 
 @dataclass(frozen=True, repr=False)
@@ -331,9 +331,8 @@ class Damper(OfMotion):
     def told(self, conversion: Any = None) -> str:
         """The damper in a line."""
         units = self.shown_in or SI
-        force, speed = units.of("F_Y"), units.of("V_C")
-        parts = ((self.linear, [speed]), (self.quadratic, [speed, speed]))
-        return f"<damper: {' and '.join(_told(x, force.per(by)) for x, by in parts if x) or 'none'}>"
+        parts = [_told(x, units.of(f"F_Y.{name}")) for name, x in self.numbers.items() if x]
+        return f"<damper: {' and '.join(parts) or 'none'}>"
 
 
 @dataclass(frozen=True, repr=False)

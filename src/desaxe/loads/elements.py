@@ -4,10 +4,9 @@ from collections.abc import Callable
 from typing import Any
 
 from ..mechanism.inputs import Input
-from ..mechanism.quantity_units import SI, UnitSystem
+from ..mechanism.quantity_units import UnitSystem
 from ..mechanism.read import number_of
 from ..support.shown import shown
-from ..units.system import Conversion
 from .along_motion import Damper, Spring
 from .columns import column_of
 from .load import Load
@@ -39,10 +38,8 @@ class MakeSpring(Maker):
 
     def __call__(self, stiffness: Any, free: Any) -> Load:
         """A spring; see `help(desaxe.spring)`."""
-        units = self.units
-        per = None if units is None else _force(units).per([units.of("Y")])
-        numbers = _number(STIFFNESS, stiffness, per), _number(FREE, free, self.unit("Y"))
-        return Spring(*numbers, ("value", "Y") if units is None and _plain(stiffness, free) else ())
+        numbers = _number(STIFFNESS, stiffness, self.units), _number(FREE, free, self.units)
+        return Spring(*numbers, ("value", "Y") if self.units is None and _plain(stiffness, free) else ())
 
 
 class MakeDamper(Maker):
@@ -64,14 +61,9 @@ class MakeDamper(Maker):
 
     def __call__(self, linear: Any = 0.0, quadratic: Any = 0.0) -> Load:
         """A damper; see `help(desaxe.damper)`."""
-        units = self.units
-        by: list[Conversion | None] = [None, None]
-        if units is not None:
-            speed = units.of("V_C")
-            by = [_force(units).per([speed]), _force(units).per([speed, speed])]
-        numbers = _number(LINEAR, linear, by[0]), _number(QUADRATIC, quadratic, by[1])
-        plain = units is None and _plain(*(x for x in (linear, quadratic) if shown(x) not in ("0", "0.0")))
-        return Damper(*numbers, ("value", "V_C") if plain else ())
+        numbers = _number(LINEAR, linear, self.units), _number(QUADRATIC, quadratic, self.units)
+        plain = _plain(*(x for x in (linear, quadratic) if shown(x) not in ("0", "0.0")))
+        return Damper(*numbers, ("value", "V_C") if plain and self.units is None else ())
 
 
 class MakeOverV(Maker):
@@ -111,22 +103,20 @@ class MakeOverV(Maker):
         return table_over_V(x, column_of("over_V: forces", forces, ("N",), force_unit(self.units)), kind)
 
 
-def _number(row: Input, value: Any, unit: Conversion | None) -> float:
-    """A number in SI units, a plain one from `unit`."""
+def _number(row: Input, value: Any, units: UnitSystem | None) -> float:
+    """A number in SI units, a plain one from these."""
     number = number_of(row, value)
     if number is None:
         raise TypeError(f"{row.name} = {shown(value)}: expected {row.limit}, a number or a text with a unit")
-    is_plain = unit is not None and not isinstance(value, str) and not hasattr(value, "magnitude")
-    return float(unit.to_si(number)) if is_plain and unit is not None else number
+    if units is None or not _plain(value):
+        return number
+    force_unit(units)  # which is the same along both axes
+    return float(units.of(f"F_Y.{row.name}").to_si(number))
 
 
 def _plain(*values: Any) -> bool:
     """True if one of the values has no unit."""
     return any(not isinstance(value, str) and not hasattr(value, "magnitude") for value in values)
-
-
-def _force(units: UnitSystem) -> Conversion:
-    return force_unit(units) or SI.of("F_Y")
 
 
 spring = MakeSpring()

@@ -7,6 +7,7 @@ A dimension that is not named stays in SI units and radians. Velocities, acceler
 length that is named, per second; a quantity may have a unit of its own. A sensitivity is a quotient of units.
 """
 
+import re
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import Any
@@ -41,6 +42,9 @@ OTHERS = {
     "mass": "kg",
     "product": "kg*m",
 }  # fmt: skip
+# Numbers of a load on the slider: one is the load's unit by those of these quantities; a position is no load.
+OF_LOADS = {"stiffness": ("Y",), "linear": ("V_C",), "quadratic": ("V_C", "V_C"), "free": None}
+_OF_A_LOAD = re.compile(rf"(F_[XY])\.({'|'.join(OF_LOADS)})(_\d+)?")  # stiffness_2 is of a second spring
 
 
 class UnitSystem:
@@ -81,6 +85,10 @@ class UnitSystem:
         """The conversion of a quantity, sensitivity, input or measure of a design."""
         if name in self._by_name:
             return self._by_name[name]
+        of_load = _OF_A_LOAD.fullmatch(name)
+        if of_load:
+            per = OF_LOADS[of_load[2]]
+            return self.of("Y") if per is None else self.of(of_load[1]).per([*map(self.of, per)])
         base, by = parts(name)
         if by and not self.quotients:
             return Conversion(si_unit(name))
@@ -119,6 +127,8 @@ SI = UnitSystem({})
 
 def si_unit(name: str) -> str:
     """The SI unit of a quantity, input or measure, also of one slider of several; ValueError for another."""
+    if _OF_A_LOAD.fullmatch(name):
+        return SI.of(name).unit
     if name.endswith("]"):
         name = name.partition("[")[0]
     if name in INPUTS:
