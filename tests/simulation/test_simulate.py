@@ -270,6 +270,36 @@ def test_a_torque_that_jumps_with_the_way_of_turning_is_told():
     assert "chatters at standstill" in found["message"]
 
 
+@pytest.mark.parametrize("masses", [{}, {"m_slider": 0.0, "m_rod": 0.0}, {"mu": 0.05}], ids=str)
+@pytest.mark.parametrize("rtol", [1e-10, 1e-4])
+@pytest.mark.parametrize(
+    ("torque", "speed"),
+    [
+        (lambda omega: 5.0 if omega < 10.0 else -5.0, 10.0),
+        (lambda omega: 5.0 if omega <= -7.0 else -5.0, -7.0),
+        (lambda t, omega: 5.0 if omega < 10.0 + 0.0 * t else -5.0, 10.0),
+    ],
+)
+def test_a_two_point_controller_chatters_and_ends_soon(torque, speed, rtol, masses):
+    calls = []
+
+    def counted(t, omega):
+        calls.append(t)
+        return torque(omega) if torque.__code__.co_argcount == 1 else torque(t, omega)
+
+    found = dx.simulate(torque=counted, t_end=2.0, rtol=rtol, **{**PRESS, **masses})
+    assert found["status"] == 4
+    assert f"jumps back and forth across omega = {speed:g}; let it" in found["message"]
+    assert found["omega"][-1] == pytest.approx(speed, rel=0.01)
+    assert len(calls) < 100_000
+
+
+def test_a_torque_that_is_steep_over_a_range_of_speeds_does_not_chatter():
+    found = dx.simulate(torque=lambda omega: 5.0 * math.tanh(50.0 * (10.0 - omega)), t_end=1.0, **PRESS)
+    assert found["status"] == 0
+    assert found["omega"][-1] == pytest.approx(10.0, abs=0.1)
+
+
 def test_too_many_steps_are_a_failure():
     found = dx.simulate(torque=0.25, t_end=5.0, max_steps=10, **PRESS)
     assert found["status"] == 4

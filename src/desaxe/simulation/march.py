@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..mechanism.messages import named
 from ..support.deadline import Deadline
 from .collocation import BRIEF, Collocation, PanelLimits
 from .drive import FunctionCurve
@@ -41,6 +42,7 @@ EXACT = 0.02  # tolerances: a panel whose inside is so exact need not be solved 
 PROBES = 2000  # instants of a motion at which loads that depend on time are compared with the panels
 SHARP = 3e-11  # of a radian: a limit angle cannot be told better
 CHATTER = 6  # standstills in a row, all within a millionth of the time
+CROWD, NARROW, BESIDE = 64, 0.1, 0.005  # so many panels, rad that they turn, of a speed on either side of it
 FLOOR = 0.01  # of the root of the energy that start and loads suggest: the least size of v
 
 
@@ -256,6 +258,8 @@ class March:
                 return
             self._accept(panels[-1], panels[-1].end())
             self.left = inf
+            if self.by_functions and self._slides(law):
+                return
         self.stop(DONE, "reached t_end = " + time_of(self.t_end))
 
     def _accept_calm(self, panels: list[Panel]) -> None:
@@ -357,6 +361,24 @@ class March:
             return False
         why = " on: torque or load jumps where omega changes its sign; let it change over a range of omega"
         self.stop(FAILED, "the crank chatters at standstill from t = " + time_of(self.t) + why)
+        return True
+
+    def _slides(self, law: Law) -> bool:
+        """True if a torque that jumps at a speed drives the crank back to it from either side."""
+        last, (theta, omega) = self.panels[-CROWD:], self.state
+        if len(last) < CROWD or abs(float(self.y[Q] - last[0].y[Q])) > NARROW:
+            return False
+        low, high = omega - BESIDE * abs(omega), omega + BESIDE * abs(omega)
+        below, above = (float(law.alpha(self.t, theta, speed)) for speed in (low, high))
+        if not above < 0.0 < below:
+            return False
+        while low < (middle := 0.5 * (low + high)) < high:
+            low, high = (middle, high) if law.alpha(self.t, theta, middle) >= 0.0 else (low, middle)
+        if law.alpha(self.t, theta, low) - law.alpha(self.t, theta, high) < 0.5 * (below - above):
+            return False  # it is steep there, without a jump
+        across = " on: torque or load jumps back and forth across " + named("omega", high, ".6g")
+        remedy = "; let it change over a range of omega"
+        self.stop(FAILED, "the crank chatters from t = " + time_of(self.t) + across + remedy)
         return True
 
     # ---- events ---------------------------------------------------------------------------------
