@@ -81,6 +81,28 @@ def test_a_load_that_follows_the_slider(kind, numbers_of, folder):
     assert replace(saved.inputs["F_Y"], unit=None) == load
 
 
+JUMPS = {
+    "over theta": dx.over_theta([0.3, 1.0, 1.0, 4.0], [0.0, -4e5, -50.0, 20.0], kind="linear"),
+    "four-stroke": dx.over_theta([0.0, 7.1, 7.1, 9.0], [0.0, -4e5, 0.0, 0.0], kind="linear", period=12.566),
+    "over Y": dx.over_Y([0.05, 0.0613, 0.0613, 0.09], [0.0, 0.0, -3e5, -3e5], [0.0, 0.0, 0.0, 0.0]),
+    "over the stroke": dx.over_stroke(
+        [0.0, 0.0083, 0.0083], [-4e5, -4e5, 0.0], [0.0] * 3, dead_centre="outer"
+    ),
+    "from the inner": dx.over_stroke([0.0, 0.011], [5e5, 0.0], kind="step", dead_centre="inner"),
+    "either way": dx.over_Y([0.03, 0.1], [-3e5, -3e5], [1e5, 2e5]),
+}
+
+
+@pytest.mark.parametrize("kind", JUMPS)
+@pytest.mark.parametrize("name", ["T_in", "N_C"])
+def test_a_peak_at_a_jump_is_its_one_sided_limit(kind, name, numbers_of, folder):
+    path = folder / f"jump_{list(JUMPS).index(kind)}_{name}.html"
+    page = numbers_of(dx.explore(names=["T_in", "N_C"], path=path, F_Y=JUMPS[kind], **PRESS))
+    top = f"((d) => desaxe.peakOf('{name}', d, desaxe.curve('{name}', d)))(desaxe.state.designs[0])"
+    exact = dx.peak(name, F_Y=JUMPS[kind], **PRESS)
+    assert abs(page.evaluate(top)["value"]) == pytest.approx(exact["value"], rel=1e-7)
+
+
 def test_a_function_is_refused(folder):
     with pytest.raises(TypeError, match=r"explore: F_Y = .* a page holds numbers and tables, no functions"):
         dx.explore(path=folder / "none.html", F_Y=lambda theta: 2.0 * np.sin(theta), **PRESS)

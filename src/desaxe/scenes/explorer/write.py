@@ -111,10 +111,12 @@ def _load(load: TableOverTheta | OverY) -> dict[str, Any]:
     """A table: cubics in the distance from a knot; one over Y or the stroke has them for each way."""
     if isinstance(load, TableOverTheta):
         own = {"knots": load.table.knots, "rows": load.table.rows, "period": load.period}
+        own |= {"jumps": load.table.jumps}
     else:
         inward = None if load.inward is None else load.inward.rows
         own = {"knots": load.outward.knots, "rows": load.outward.rows, "inward": inward}
-        own |= {"centre": load.centre}
+        jumps = {knot for table in load.tables for knot in table.jumps}
+        own |= {"centre": load.centre, "jumps": sorted(jumps)}
     return {**own, "over": load.over, "kind": load.kind}
 
 

@@ -6,6 +6,7 @@ for (const [base, { names }] of Object.entries(CONTENT.functions)) {
 }
 const TURN = 2 * Math.PI;
 const SAMPLES = 721;
+const BESIDE = 1e-9; // rad: the sides of a jump, which every function has on its own side there
 const NEARER = [1, 2, 3, 4, 5, 6, 7, 8].map((k) => 4 ** -k); // of a step towards a border
 
 function answers(base, design, theta) {
@@ -33,15 +34,42 @@ function evenAngles() {
 
 // Angles at which no arc can be missed, however short: the crank pin is farthest from the slider axis at
 // the quarters, where every gap has its middle, and on the axis where sin(theta) = -ec/AB.
-function tellingAngles(design, from, to) {
+function tellingAngles(design) {
   const zero = Math.asin(-design.ec / design.AB);
-  const found = [];
-  for (const angle of [Math.PI / 2, -Math.PI / 2, zero, Math.PI - zero]) {
-    if (Number.isNaN(angle)) continue;
-    const first = Math.ceil((from - angle) / TURN);
-    for (let k = first; angle + k * TURN <= to; k++) found.push(angle + k * TURN);
-  }
+  const found = [Math.PI / 2, -Math.PI / 2, zero, Math.PI - zero].filter((angle) => !Number.isNaN(angle));
+  return found.flatMap((angle) => repeated(angle, TURN));
+}
+
+// An angle after whole periods, as often as it is on the page.
+function repeated(angle, period) {
+  const [from, to] = CONTENT.theta, found = [];
+  for (let k = Math.ceil((from - angle) / period); angle + k * period <= to; k++) found.push(angle + k * period);
   return found;
+}
+
+// Both sides of the angles at which loads jump: of tables over theta, at positions of the slider, and at the dead
+// centres, where a table for the other way begins.
+function jumpAngles(design) {
+  const found = [], [from, to] = CONTENT.theta, turn = turnOf(design);
+  const dead = turn ? [turn.outer, turn.inner].flatMap((angle) => repeated(angle, TURN)) : [];
+  const samples = [...evenAngles(), ...dead].sort((a, b) => a - b);
+  const Y = (theta) => valueAt("Y", design, theta);
+  for (const { over, jumps, inward, centre, period } of Object.values(CONTENT.loads)) {
+    if (over === "theta") found.push(...jumps.flatMap((angle) => repeated(angle, period)));
+    else if (over === "Y" || turn) {
+      if (inward) found.push(...dead);
+      const origin = over === "Y" ? null : Y(turn[centre.slice(2)]);
+      const place = (theta) => (origin === null ? Y(theta) : Math.abs(Y(theta) - origin));
+      const places = jumps.length ? samples.map(place) : [];
+      for (const jump of jumps) {
+        samples.slice(1).forEach((angle, k) => {
+          if (places[k] >= jump === places[k + 1] >= jump) return;
+          found.push(border((theta) => place(theta) >= jump, samples[k], angle)[0]);
+        });
+      }
+    }
+  }
+  return found.flatMap((angle) => [angle - BESIDE, angle + BESIDE]).filter((angle) => from <= angle && angle <= to);
 }
 
 // The last double on each side of a border between two angles, on one of which `inside` holds.
@@ -55,10 +83,10 @@ function border(inside, a, b) {
   }
 }
 
-// The angles of a curve: even ones, telling ones, both sides of each border, and ever denser ones towards it
+// The angles of a curve: even ones, telling ones, both sides of each jump, both sides of each border, and ever denser ones towards it
 // from where there are values, which may grow there.
-function anglesOf(inside, design, from, to, even) {
-  const angles = [...even, ...tellingAngles(design, from, to)].sort((a, b) => a - b);
+function anglesOf(inside, design) {
+  const angles = [...evenAngles(), ...tellingAngles(design), ...jumpAngles(design)].sort((a, b) => a - b);
   const found = [];
   angles.forEach((angle, k) => {
     const before = angles[k - 1];
@@ -74,9 +102,8 @@ function anglesOf(inside, design, from, to, even) {
 
 // A quantity over the crank angle: null where it has no value, so that no line is drawn there.
 function curve(name, design) {
-  const [from, to] = CONTENT.theta;
   const inside = (theta) => Number.isFinite(valueAt(name, design, theta));
-  const theta = anglesOf(inside, design, from, to, evenAngles());
+  const theta = anglesOf(inside, design);
   const value = theta.map((angle) => valueAt(name, design, angle)).map((v) => (Number.isFinite(v) ? v : null));
   return { theta, value };
 }
