@@ -88,6 +88,10 @@ def test_other_functions_are_refused(load, message):
         (lambda: dx.spring(1.0, 0.1) + float("inf"), "the number must be finite"),
         (lambda: 10**400 * dx.spring(1.0, 0.1), "the factor must be finite"),
         (lambda: dx.simulate(torque=dx.spring(1.0, 0.1), t_end=1.0, **DESIGN), "torque = <spring"),
+        (
+            lambda: dx.steady(torque=lambda omega, V_C: 1.0, **DESIGN),
+            "a function of V_C is not served by this call, which passes theta, omega$",
+        ),
         (lambda: dx.steady(torque=dx.over_V([0, 1], [1, 0]), **DESIGN), "torque = <load over V_C"),
         (lambda: dx.evaluate("T_in_wrt_AB", theta=1.0, F_Y=lambda V_C: V_C, **TURNING), "desaxe.over_V"),
         (
@@ -100,6 +104,35 @@ def test_other_functions_are_refused(load, message):
 def test_what_makers_refuse(make, message):
     with pytest.raises((TypeError, ValueError), match=message):
         make()
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: dx.spring(800, free=200), 'free = 200 m, write free = "200 mm"'),
+        (lambda: dx.Machine(units="cm").spring(800, free=3000), 'free = 3000 cm, write free = "3000 mm"'),
+        (lambda: dx.simulate(torque=1, t_end=0.01, theta0=20, **DESIGN), 'write theta0 = "20 deg"'),
+        (lambda: dx.simulate(torque=1, t_end=0.01, until=90, **DESIGN), 'write until = "90 deg"'),
+        (lambda: dx.simulate(torque=1, t_end=1e-4, omega_start=3000, **DESIGN), 'omega_start = "3000 rpm"'),
+    ],
+)
+def test_slips_of_units(make, words, monkeypatch):
+    monkeypatch.setattr("desaxe.mechanism.slips.WARNED", set())
+    with pytest.warns(dx.UnitWarning) as caught:
+        make()
+    assert words in str(caught[0].message)
+    assert caught[0].filename == __file__
+
+
+def test_loads_and_motors_are_called_with_texts():
+    press = dx.Machine(units="mm, rpm, N")
+    motor = dx.over_omega(["0 rpm", "300 rpm"], ["60 N m", "0 N m"])
+    assert motor("250 rpm") == pytest.approx(10.0)
+    assert press.over_omega([0, 300], [60, 0])("250 rpm") == pytest.approx(10.0)
+    assert dx.spring(800, "0.2 m")("300 mm") == pytest.approx(-80.0)
+    assert press.damper(0.2)("1 m/s") == pytest.approx(-200.0)
+    assert dx.over_Y([0, 1], [0, 10])("30 cm") == pytest.approx(3.0)
+    assert dx.over_theta(np.sin)("30 deg") == pytest.approx(0.5)
 
 
 def test_the_units_of_a_machine():
@@ -237,7 +270,7 @@ def test_motions_under_loads_along_the_motion(name, torque, start):
     known = getattr(load, "has_slope", False) and not torque.startswith("of")
     shaft = dx.Crankshaft(dx.Machine(**LENGTHS, m_slider=2.0, F_Y=load), phase=[0.0], I_shaft=0.05)
     motions = [
-        dx.simulate(F_Y=load, until=90.5, wrt=["AB", *numbers] if known else (), **run, **DESIGN),
+        dx.simulate(F_Y=load, until=30.0 * np.pi, wrt=["AB", *numbers] if known else (), **run, **DESIGN),
         dx.Machine(**DESIGN, F_Y=load).simulate(**run),
         shaft.simulate(**{**run, "theta0": 0.3}),
     ]

@@ -10,8 +10,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from ..mechanism.catalogue import has
+from ..mechanism.inputs import Input
 from ..mechanism.names import LENGTHS
-from ..mechanism.quantity_units import SI
+from ..mechanism.quantity_units import SI, si_unit
+from ..mechanism.read import in_si
 from ..support.computed import computed_once
 from ..support.forks import IMPORTS
 from ..support.shown import with_unit
@@ -114,8 +116,8 @@ class OfMotion(Load):
         if missing or len(columns) > len(self.needs):
             raise TypeError(f"{self!r} is called with {', '.join(self.needs)}")
         units = self.shown_in
-        if units is not None:
-            given = {n: units.of(n).to_si(x) if n in self.needs else x for n, x in given.items()}
+        for name in self.needs:
+            given[name] = in_si(Input(name, si_unit(name), ""), given[name], units)
         now = {"way": 1.0, **{n: _plain(x) for n, x in given.items()}}
         value = self.partials(now).value
         return value if units is None else self.values_in(units).shown(value)

@@ -4,14 +4,15 @@ from collections.abc import Callable
 from typing import Any
 
 from ..mechanism.inputs import Input
-from ..mechanism.quantity_units import UnitSystem
+from ..mechanism.quantity_units import SI, UnitSystem
 from ..mechanism.read import number_of
+from ..mechanism.slips import warn_of_slips
 from ..support.shown import shown
 from .along_motion import Damper, Spring
 from .columns import column_of
 from .load import Load
 from .made import table_over_V
-from .maker import Maker
+from .maker import MAKING, Maker
 from .units import force_unit, load_over
 
 STIFFNESS = Input("stiffness", "N/m", "of a spring", 0.0, "a stiffness >= 0")
@@ -39,6 +40,7 @@ class MakeSpring(Maker):
     def __call__(self, stiffness: Any, free: Any) -> Load:
         """A spring; see `help(desaxe.spring)`."""
         numbers = _number(STIFFNESS, stiffness, self.units), _number(FREE, free, self.units)
+        warn_of_slips({"free": free}, self.units or SI, stacklevel=MAKING)
         return Spring(*numbers, ("value", "Y") if self.units is None and _plain(stiffness, free) else ())
 
 

@@ -14,6 +14,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from ..mechanism.closed import TURN
+from ..mechanism.inputs import Input
+from ..mechanism.quantity_units import si_unit
+from ..mechanism.read import in_si
 from ..support.computed import computed_once
 from ..support.forks import IMPORTS
 from .table import Arrays, Table, arrays_of, polynomial
@@ -114,11 +117,9 @@ class Load(ABC):
 
     def _in_its_units(self, value: Callable[[Any], Any], place: Any) -> Any:
         """A value in SI units by a place, in the units of the machine that made the load."""
-        units = self.shown_in
-        if units is None:
-            return value(place)
-        si = units.of("theta" if self.over == "theta" else "Y").to_si(place)
-        return self.values_in(units).shown(value(si))
+        units, over = self.shown_in, "theta" if self.over == "theta" else "Y"
+        result = value(in_si(Input(over, si_unit(over), ""), place, units))
+        return result if units is None else self.values_in(units).shown(result)
 
 
 class OverTheta(Load):

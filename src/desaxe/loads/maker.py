@@ -51,6 +51,9 @@ class Maker:
         return f"desaxe.{self.name}({self.takes}){units}"
 
 
+MAKING = 5  # frames between the caller of a maker and its warning
+
+
 @contextmanager
 def naming(source: Any) -> Iterator[None]:
     """ValueErrors within the block begin with the name of the file."""

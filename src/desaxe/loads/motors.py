@@ -8,19 +8,18 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.inputs import TINY, Input
+from ..mechanism.inputs import INPUTS, TINY, Input
 from ..mechanism.messages import Message, amount, listed, named
 from ..mechanism.quantity_units import SI, UnitSystem
-from ..mechanism.read import read_array
+from ..mechanism.read import in_si, read_array
 from ..mechanism.slips import warn_of_slips
 from ..support.shown import shown
 from .columns import Column, column_of
 from .made import ascending_table
-from .maker import Maker, naming
+from .maker import MAKING, Maker, naming
 from .table import Table
 
 Array = NDArray[np.float64]
-MAKING = 5  # frames between the caller of a maker and its warning
 ROWS = (
     Input("breakdown_torque", "N*m", "", TINY, "a finite torque > 0"),
     Input("breakdown_slip", "1", "", TINY, "a finite slip > 0"),
@@ -61,8 +60,8 @@ class Motor(ABC):
 
     def __call__(self, omega: Any) -> Any:
         """The torque at a speed, in the units of the machine or scene that it was made for, else in SI."""
-        units = self.units or SI
-        return units.of("torque").shown(self.value(units.of("omega").to_si(omega)))
+        torque = self.value(in_si(INPUTS["omega"], omega, self.units))
+        return (self.units or SI).of("torque").shown(torque)
 
     def value(self, omega: Any) -> Any:
         """The torque at a speed [rad/s]: a number or an array."""

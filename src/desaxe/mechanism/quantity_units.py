@@ -38,7 +38,7 @@ OTHERS = {
     "flywheel_inertia": "kg*m^2",
     **dict.fromkeys(("C_inertia_X", "C_inertia_Y"), "N*m"),
     **dict.fromkeys(("breakdown_slip", "gear"), "1"),
-    **dict.fromkeys(("radius", "spacing"), "m"),
+    **dict.fromkeys(("radius", "spacing", "free"), "m"),
     "mass": "kg",
     "product": "kg*m",
 }  # fmt: skip

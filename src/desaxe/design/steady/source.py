@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...evaluation.arrays import number_or_array
-from ...loads.arguments import arguments_of, by_position
+from ...loads.arguments import arguments_of, by_position, required
 from ...loads.load import Load, OverTheta
 from ...loads.motors import Motor
 from ...loads.resolve import as_load
@@ -155,7 +155,8 @@ def source_of(torque: Any) -> TorqueSource:
         return _over_angle(load)
     if not callable(torque):
         return _constant(number_or_array(Input("torque", "N*m", ""), torque))
-    roles = arguments_of("torque", torque, ("t", "theta", "omega"))
+    passes_time = "t" in required("torque", torque)  # of which it must not depend
+    roles = arguments_of("torque", torque, ("theta", "omega", "t")[: 2 + passes_time])
     if roles == ("theta",):
         return source_of(as_load("torque", torque))
     function, theta = TorqueFunction(torque, roles), np.linspace(0.0, 6.0, 7)
