@@ -80,6 +80,29 @@ def test_the_header_says_which_results_have_values(tmp_path):
     assert seen == {status: {(True, True, False)} for status in (4, 5, 6)}
 
 
+def test_the_header_lists_what_the_step_has_folded_in(tmp_path):
+    """Masses of the acceleration, too, which no output needs; of what is left open, nothing."""
+    content = {
+        "outputs": ["a_C"],
+        "mechanism": {"ec": 0.01, "AB": 0.05, "BC": [0.2, 0.3]},
+        "motion": {"theta": [1.0, 2.0], "omega": 0.0},
+        "masses": {"m_slider": 20.0, "m_crank": 1.5, "I_crank": 0.02},
+        "loads": {"mu": 0.3, "F_Y": [0.0, 1.0]},
+    }
+    place = dx.compile(content, tmp_path / "press", to="c")
+    (line,) = (row for row in (place / "press.h").read_text().splitlines() if "Folded in" in row)
+    listed = dict(item.split(" = ") for item in line.partition(": ")[2].removesuffix(".").split(", "))
+    loaded = library(place / "press.c")
+    fixed = {name: float(value.split()[0]) for name, value in listed.items()}
+    assert {"I_crank", "m_crank", "m_slider", "mu"} < fixed.keys()
+    assert not {"BC", "F_Y", "theta"} & fixed.keys()
+    alpha, row = ctypes.c_double(), (ctypes.c_double * 3)(1.0, 0.2, 5.0)
+    state = [ctypes.c_double(value) for value in (9.0, 1.0, 3.0)]  # torque, theta, omega
+    assert loaded.press_alpha(*state, row, ctypes.byref(alpha)) == 0
+    there = {**fixed, "BC": 0.2, "theta": 1.0, "F_Y": 5.0, "omega": 3.0, "alpha": alpha.value}
+    assert dx.evaluate("T_in", **there) == pytest.approx(9.0, rel=1e-12)
+
+
 def test_status(tmp_path):
     loaded = library(dx.compile(scene(), tmp_path / "press", to="c") / "press.c")
     good = {"theta": 1.0, "ec": 0.02, "AB": 0.04, "BC": 0.064, "omega0": 10.0, "alpha": 1.0}

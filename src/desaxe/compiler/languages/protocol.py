@@ -112,6 +112,7 @@ class Language(ABC):
     suffix: str  # of the file that is called
     about: str  # what is written, for `desaxe compile --help`
     second_order = False  # whether `derivatives` and `values` are wanted
+    steps = False  # whether `motion` is wanted
     extended = True  # whether sums and products are rounded as they stand, which twice the digits want
     only_file = False  # whether a path is always that of the file
 

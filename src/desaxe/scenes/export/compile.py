@@ -123,7 +123,7 @@ def _generated(scene: Scene, place: Path, to: str) -> Generated:
     if not source:
         said = f'desaxe.compile(scene, "{place.name}"{keyword})'
     make = numba_module_of if to == "numba" else module_of
-    module = make(scene, Order(to, name, said, language.second_order))
+    module = make(scene, Order(to, name, said, language.second_order, language.steps))
     return Generated(folder, {file: sealed(text) for file, text in language.files(module).items()})
 
 

@@ -47,6 +47,12 @@ def has_masses(given: Mapping[str, object]) -> bool:
     return any(given.get(name, 0.0) != 0.0 for name in MASSES)
 
 
+def numbers_of(given: Mapping[str, object]) -> dict[str, float]:
+    """The lengths, masses and loads that an acceleration has folded in: numbers, and 0 for what is absent."""
+    values = {n: given.get(n, 0.0) for n in (*LENGTHS, *LOADS) if n in given or n not in CENTRES}
+    return {name: value for name, value in values.items() if isinstance(value, float)}
+
+
 def motion(
     given: Mapping[str, object],
     branch: int,
@@ -56,14 +62,11 @@ def motion(
 
     Without friction, mu = 0, and loads that differ by the way of the slider there is no `way`.
     """
-    values = {
-        name: given.get(name, 0.0) for name in (*LENGTHS, *LOADS) if name in given or name not in CENTRES
-    }
-    numbers = {name: value for name, value in values.items() if isinstance(value, float)}
+    numbers = numbers_of(given)
     rubs = numbers.get("mu") != 0.0
     fixed = {**numbers, "branch": float(branch), "alpha": 0.0, "mu": 0.0}
     names = (*SMOOTH, STATUS, *(CONTACT if rubs else ()))
-    base = _base(names, form_of(values), tuple(fixed.items()), loads)
+    base = _base(names, form_of(given), tuple(fixed.items()), loads)
     law = read_function(RUBBING if rubs else FREE)
     parts = dict(zip((*SMOOTH, STATUS, *CONTACT), base.outputs, strict=False))
     law = renamed(law, parts | {line.name: f"_{line.name}" for line in law.lines})

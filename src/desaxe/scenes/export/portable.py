@@ -29,7 +29,7 @@ from ..scene import Scene
 from ..schema import SceneError
 from .axes import own_axes
 from .loaded import require_tables
-from .motion import has_masses, motion_solver
+from .motion import has_masses, motion_solver, numbers_of
 from .solvers import solvers
 
 Fixed = tuple[tuple[str, float], ...]
@@ -51,6 +51,7 @@ class Order(NamedTuple):
     name: str
     command: str
     second_order: bool = False
+    steps: bool = False
     status: bool = False  # whether the status is a result of every module
     lost: Callable[[Content], list[str]] | None = (
         None  # what of a scene is left out, where it is not `left_out`
@@ -107,12 +108,11 @@ def module_of(scene: Scene, order: Order, more: Sequence[str] = (), opened: Sequ
     outputs = tuple(Symbol(*quantity(name, state)) for name in results)
     derivatives, values = _derivatives(content, arguments) if order.second_order else ({}, {})
     lost = (order.lost or left_out)(content)
-    head = (*heading(scene, order.command), *_facts(content, asked, lost))
     own = own_axes(content, results)
     given = content.inputs | {n: value for n, value in fixed if n in content.inputs}
-    moves = None
-    if has_masses(given):
-        moves = motion_solver(given, content.branch, loads)
+    moves = motion_solver(given, content.branch, loads) if order.steps and has_masses(given) else None
+    folded = dict(fixed) | (numbers_of(given) if moves else {})
+    head = (*heading(scene, order.command), *_facts(content, asked, folded, lost))
     needed = [name for item in asked.loads.items() for name in tables_of(*item)]
     used = {*needed, *(tables_in(moves.solve) if moves else ())}
     every = {name: table for item in loads.items() for name, table in tables_of(*item).items()}
@@ -148,9 +148,11 @@ def heading(scene: Scene, command: str) -> tuple[str, ...]:
     )
 
 
-def _facts(content: Content, asked: PortableRequest, lost: list[str]) -> tuple[str, ...]:
+def _facts(
+    content: Content, asked: PortableRequest, folded: Mapping[str, float], lost: list[str]
+) -> tuple[str, ...]:
     """Accuracy, frame, what is folded in and what is left out."""
-    fixed = {n: value for n, value in asked.fixed if n in INPUTS}
+    fixed = {n: folded[n] for n in ORDER if n in folded}
     numbers = [f"{n} = {value!r} {INPUTS[n].unit}".removesuffix(" 1") for n, value in fixed.items()]
     tables = [f"{n}, a {load.told().strip('<>')}" for n, load in asked.loads.items()]
     numbers += tables

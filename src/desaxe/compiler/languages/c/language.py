@@ -24,6 +24,7 @@ class C(Language):
 
     name = "c"
     suffix = ".c"
+    steps = True
     about = "FOLDER/name.h and name.c, C99, named as the folder"
 
     def files(self, module: Module) -> dict[str, str]:
