@@ -31,11 +31,14 @@ LOADS = {
     "steps over Y": {"over_Y": ONE_WAY, "kind": "step"},
     "outer": {"over_stroke": NEAR, "kind": "linear", "dead_centre": "outer"},
     "inner": {"over_stroke": [row[:2] for row in NEAR], "kind": "linear", "dead_centre": "inner"},
+    "spring": dx.spring(800.0, free=0.1),
 }
 
 
 def load_of(name):
     """A load of `LOADS` as a call takes it."""
+    if isinstance(LOADS[name], dx.loads.Load):
+        return LOADS[name]
     given = dict(LOADS[name])
     options = {key: given.pop(key) for key in ("kind", "dead_centre") if key in given}
     ((over, rows),) = given.items()
@@ -68,7 +71,7 @@ def moved(name, torque, omega, t_end, **more):
     )  # fmt: skip
 
 
-FIRST = ("linear", "cubic", "both ways", "steps over Y", "inner")  # each is a model for gcc to compile
+FIRST = ("linear", "cubic", "both ways", "steps over Y", "inner", "spring")  # gcc compiles a model of each
 
 
 @pytest.mark.parametrize(
@@ -252,6 +255,9 @@ def test_what_an_fmu_does_not_have_is_refused_by_name(tmp_path):
     loads = {"F_Y": LOADS["linear"]}
     with pytest.raises(ValueError, match="'T_in_wrt_theta' is a derivative through"):
         dx.compile(content(outputs=["T_in_wrt_theta"], loads=loads), tmp_path / "press.fmu", to="fmu")
+    for load in (dx.damper(9.0), dx.spring(9.0, 0.1) + dx.over_theta([0, 1], [2, 3]), dx.over_theta(np.sin)):
+        with pytest.raises(ValueError, match=r"an FMU holds, .* or one spring; leave F_Y out"):
+            dx.compile(content(loads={"F_Y": load}), tmp_path / "press.fmu", to="fmu")
 
 
 def test_a_dead_centre_that_the_lengths_do_not_have_is_told(made):

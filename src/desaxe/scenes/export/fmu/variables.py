@@ -10,6 +10,7 @@ from ....mechanism.inputs import INPUTS
 from ....mechanism.names import CENTRES, LENGTHS, MASSES
 from ...content import Content
 from ...schema import SceneError
+from ..loaded import table_of
 
 FIXED = (*LENGTHS, *MASSES, *CENTRES, "g_X", "g_Y", "mu")  # parameters, in their order
 FORCES = ("F_X", "F_Y")
@@ -86,8 +87,8 @@ def variables(content: Content, drive: str) -> Variables:
 
 
 def tables(inputs: Mapping[str, Any]) -> dict[str, Load]:
-    """The loads that vary with the motion, by the forces to which they are added."""
-    return {name: load for name, load in inputs.items() if callable(load)}
+    """The tables of loads that vary with the motion, by the forces to which they are added."""
+    return {name: table_of(name, load) or load for name, load in inputs.items() if callable(load)}
 
 
 def check_outputs(names: tuple[str, ...], loads: Mapping[str, Load]) -> None:

@@ -19,13 +19,13 @@ from ....support.written import require_path, sealed, write_whole
 from ...content import Content
 from ...scene import Scene
 from ...schema import SceneError
-from ..loaded import require_tables
+from ..loaded import require_one_table
 from ..motion import has_masses
 from ..portable import heading, require_outputs
 from .description import description
 from .programs import programs
 from .source import source_text
-from .variables import tables, variables
+from .variables import variables
 
 COMPILERS = ("cc", "gcc", "clang")
 FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden")
@@ -109,7 +109,7 @@ def _check(scene: Scene, drive: str) -> None:
     content = scene.content
     if content.accuracy == "extended":
         raise SceneError(f'{where}: accuracy = "extended": an FMU has standard')
-    require_tables(where, split(content.inputs)[1], alone=True)
+    require_one_table(where, split(content.inputs)[1])
     if drive == "torque" and not has_masses(content.inputs):
         raise SceneError(
             f"{where}: nothing moves under a torque without inertia: give [masses], or --input omega"
@@ -120,7 +120,7 @@ def _facts(content: Content, drive: str) -> list[str]:
     return [
         "SI units and radians. Y points along the slider axis towards the slider,",
         f"theta turns from +Y towards +X; branch {content.branch:+d}; the input is {drive}.",
-        *(f"{name} is the input and {load.told()}." for name, load in tables(content.inputs).items()),
+        *(f"{name} is the input and {load.told()}." for name, load in split(content.inputs)[1].items()),
         "A result that has no value is NaN.",
     ]
 
