@@ -5,7 +5,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..mechanism.inputs import INPUTS
+from ..mechanism.keywords import check_inputs
 from ..mechanism.messages import amount
+from ..mechanism.names import WHOLE
 from ..mechanism.quantity_units import unit_of
 from ..mechanism.status import SolveStatus
 from ..runtime.request import check_common
@@ -101,6 +104,7 @@ def solve(
 def _sought(where: Mapping[Any, Any] | None, inputs: dict[str, Any]) -> tuple[Target, dict[str, Any]]:
     """The measure and its value, and the inputs without it."""
     named = {name: inputs.pop(name) for name in [*inputs] if is_named(name) and inputs[name] is not None}
+    check_inputs("solve", inputs, ("over", "where", "branch", "timeout", *INPUTS, *WHOLE, "margin"))
     if where is not None and not isinstance(where, Mapping):
         raise TypeError(f"where = {shown(where)}: expected a dict, such as {{('absmax', 'a_C'): 900.0}}")
     every = {**(where or {}), **named}
