@@ -66,6 +66,20 @@ def test_pictures_of_each_slider_and_of_a_star():
         THREE.plot.star("F_inertia_Y", order=0.5)
 
 
+@pytest.mark.parametrize("name", ["F_inertia_X", "F_inertia_Y", "M_inertia", "T_in"])
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_star_ends_at_the_harmonic_of_the_shaft(name, order):
+    """Of a V at 90 degrees and of a boxer, whose axes differ, too."""
+    for bank in ([-45, 45, 45], [0, 180, 90]):
+        shaft = THREE.replace(**{f"bank[{k}]": b for k, b in enumerate(bank)})
+        amplitude = shaft.harmonics(name, orders=2)["amplitude"]
+        drawn = shaft.plot.star(name, order=order).axes.get_title(loc="left").rpartition("sum ")[2]
+        size = max(shaft.only(k).harmonics(name, orders=2)["amplitude"][order] for k in range(3))
+        assert float(drawn.split()[0]) == pytest.approx(amplitude[order], rel=1e-3, abs=1e-8 * size)
+    lines = shaft.plot.each(name, theta=[0.0, 100.0, 200.0])[0].axes.lines
+    np.testing.assert_allclose(lines[0].get_ydata(), sum(line.get_ydata() for line in lines[1:4]), atol=1e-9)
+
+
 def test_the_report_has_the_figures_of_the_calls(tmp_path):
     page = THREE.report(tmp_path / "three.md", ["T_in"]).read_text(encoding="utf-8")
     drive, top, weight = THREE.drive(), THREE.peak("T_in"), THREE.counterweight()

@@ -137,6 +137,12 @@ class Crankshaft(Machine):
         kept = {n: MachineSpeed(v) for n, v in speeds.items() if v is not None}
         return _restored({**kept, "sliders": sliders}, system)
 
+    def only(self, index: int) -> "Crankshaft":
+        """The crankshaft with one of its sliders, in its place: what it adds to every sum."""
+        every = self["sliders"]
+        sliders = Sliders([every.members[index]], every.gravity, 0.0, every.definitions)
+        return _restored({**self._inputs, "sliders": sliders}, self.units)
+
     def scene(self, outputs: Any = (), **more: Any) -> Any:
         """Not of several sliders: TypeError."""
         raise TypeError("a scene is of one slider: crankshaft.members[0].scene(...)")

@@ -55,18 +55,16 @@ class Plots:
         return plot.polar(self._over_theta(names, inputs), name, family=family, ax=ax)
 
     def each(self, name: str, *, ax: Any = None, **inputs: Any) -> Any:
-        """Draw a quantity of each slider of a crankshaft, thin, and their sum.
-
-        Forces are along the axis of each slider; in one line they are those of the shaft.
-        """
-        parts = [f"{name}[{k}]" for k in range(len(self._machine["sliders"].members))]
-        dataset = self._over_theta([name, *parts], inputs)
+        """Draw a quantity of a crankshaft and, thin, what each slider adds to it, in the shaft's frame."""
+        dataset = self._over_theta([name], inputs)
+        given = {**inputs, "theta": dataset.theta.values}
+        parts = [self._machine.only(k).plot._over_theta([name], given) for k in range(self._sliders())]
         total = plot.curves(dataset, name, ax=ax)
         axes = total[0].axes
         degrees = total[0].get_xdata()
         theta = self._machine.units.of("theta").to_si(dataset.theta.values)
         for k, part in enumerate(parts):
-            axes.plot(np.degrees(theta), dataset[part], linewidth=0.8, label=f"slider {k}")
+            axes.plot(np.degrees(theta), part[name], linewidth=0.8, label=f"slider {k}")
         total[0].set_label("sum")
         axes.set_xlim(degrees.min(), degrees.max())
         axes.relim()
@@ -77,18 +75,25 @@ class Plots:
     def star(self, name: str = "F_inertia_Y", order: float = 1, *, ax: Any = None, **inputs: Any) -> Any:
         """Draw one harmonic of each slider as an arrow, tip to tail: the star closes where they balance.
 
-        name   a quantity of a crankshaft; each slider's is along its own axis
+        name   a sum of a crankshaft; the arrow of a slider is what it adds, in the shaft's frame
         order  of the harmonic, half ones under loads of two turns
         """
-        arrows = {}
-        for k in range(len(self._machine["sliders"].members)):
-            series = self._machine.harmonics(f"{name}[{k}]", orders=max(1, ceil(order)), **inputs)
-            at = int(np.argmin(np.abs(series["order"] - order)))
-            if series["order"][at] != order:
-                raise ValueError(f"plot.star: order = {order}: there are {series['order'][:3].tolist()} ...")
-            arrows[f"slider {k}"] = complex(series["cos"][at], series["sin"][at])
+        most, arrows = max(1, ceil(order)), {}
+        orders = self._machine.harmonics(name, orders=most, **inputs)["order"]
+        if order not in orders:
+            raise ValueError(f"plot.star: order = {order}: there are {orders[:3].tolist()} ...")
+        for k in range(self._sliders()):
+            series = self._machine.only(k).harmonics(name, orders=most, **inputs)
+            at = series["order"] == order  # nowhere for a slider whose load repeats sooner
+            arrows[f"slider {k}"] = complex(series["cos"][at].sum(), series["sin"][at].sum())
         unit = printed(self._machine.units.of(name).unit)
         return plot.star(arrows, f"{name}, order {order:g}", unit, ax=ax)
+
+    def _sliders(self) -> int:
+        """The number of sliders of a crankshaft."""
+        if "sliders" not in self._machine:
+            raise TypeError("plot.each and plot.star are of a desaxe.Crankshaft")
+        return len(self._machine["sliders"].members)
 
     def mechanism(self, theta: Any = "60 deg", *, ax: Any = None) -> Any:
         """Draw the machine to scale at a crank angle: see `desaxe.plot.mechanism`."""

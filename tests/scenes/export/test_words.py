@@ -284,7 +284,8 @@ def test_words_as_files(to, tmp_path):
             dx.compile(scene(), tmp_path / f"{word}{suffix}", to=to)
     script = set(re.findall(r"\w+", OCTAVE + PYTHON))
     own = set(spoken(to)) if to == "octave" else set()  # to a file of that name Octave may prefer its own
-    words = drawn(to, tmp_path, 12, refused | own | script | {*keyword.kwlist, *keyword.softkwlist})
+    count = 4 if to == "numba" else 12  # of which each takes seconds to compile
+    words = drawn(to, tmp_path, count, refused | own | script | {*keyword.kwlist, *keyword.softkwlist})
     for word in words:
         dx.compile(scene(), tmp_path / f"{word}{suffix}", to=to)
     wanted = dx.evaluate("a_C", theta=HERE, **SIZES, omega0=157.08)
