@@ -294,6 +294,15 @@ def test_a_two_point_controller_chatters_and_ends_soon(torque, speed, rtol, mass
     assert len(calls) < 100_000
 
 
+def test_a_two_point_controller_of_many_designs_ends_soon():
+    def held(omega):
+        return 5.0 if omega < 10.0 else -5.0
+
+    found = dx.simulate(torque=held, t_end=2.0, timeout=20.0, **{**PRESS, "AB": np.array([0.14, 0.12])})
+    assert found["status"].tolist() == [4, 4]
+    assert (found["t_last"] < 1.0).all()
+
+
 def test_a_torque_that_is_steep_over_a_range_of_speeds_does_not_chatter():
     found = dx.simulate(torque=lambda omega: 5.0 * math.tanh(50.0 * (10.0 - omega)), t_end=1.0, **PRESS)
     assert found["status"] == 0

@@ -30,6 +30,7 @@ from .events import (
     words_of,
 )
 from .law import Contact, Law, Resting, State, law_ahead, rubbing, state_of
+from .loops.motions import BESIDE, CROWD, NARROW
 from .loops.newton import DEVIATES, TAIL
 from .model import Model
 from .panel import ENDS, NODES, SERIES, Panel, basis, resting
@@ -42,7 +43,6 @@ EXACT = 0.02  # tolerances: a panel whose inside is so exact need not be solved 
 PROBES = 2000  # instants of a motion at which loads that depend on time are compared with the panels
 SHARP = 3e-11  # of a radian: a limit angle cannot be told better
 CHATTER = 6  # standstills in a row, all within a millionth of the time
-CROWD, NARROW, BESIDE = 64, 0.1, 0.005  # so many panels, rad that they turn, of a speed on either side of it
 FLOOR = 0.01  # of the root of the energy that start and loads suggest: the least size of v
 
 

@@ -23,10 +23,12 @@ from .picard import MOBILITY
 from .picard import ROWS as PICARD
 from .state import (
     FIRST,
+    FUNCTION,
     HALF,
     INERTIA,
     OUTPUTS,
     THETA0,
+    TORQUE,
     account,
     at_angle,
     energy_of,
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 COLUMNS = int64(24)  # of the room of a panel
+CROWD, NARROW, BESIDE = 64, 0.1, 0.005  # so many panels, rad that they turn, of a speed on either side of it
 SHARPEST = 3e-11  # of a radian: a limit angle cannot be told better
 
 
@@ -82,6 +85,27 @@ def part_within(y: Any, law: Any, series: Any, new: Any) -> float:
     return part if found else 2.0
 
 
+def slides(t: float, y: Any, law: Any, data: Any) -> bool:
+    """True if a torque that jumps at a speed drives the crank back to it from either side: it chatters."""
+    rows, still, trial = empty((ROWS, 16)), empty(32), empty(3)
+    for k in range(3):
+        trial[k] = y[k]
+    low, high = y[1] - BESIDE * abs(y[1]), y[1] + BESIDE * abs(y[1])
+    trial[1] = low
+    below = rows[RATE_V, 0] if motion(t, trial, law, data, rows, still) == 0 else nan
+    trial[1] = high
+    above = rows[RATE_V, 0] if motion(t, trial, law, data, rows, still) == 0 else nan
+    gap = below - above
+    for _ in range(64):  # to the half with the larger part of the difference
+        trial[1] = 0.5 * (low + high)
+        here = rows[RATE_V, 0] if motion(t, trial, law, data, rows, still) == 0 else nan
+        if below - here > here - above:
+            high, above = trial[1], here
+        else:
+            low, below = trial[1], here
+    return bool(gap > 0.0 and below - above > 0.5 * gap)
+
+
 def follow(
     law: Any, data: Any, times: Any, how: Any, table: Any, panels: Any, history: Any, numbers: Any
 ) -> Any:
@@ -93,6 +117,7 @@ def follow(
     if not start(law, data, how[1], y, scales):
         return 6
     scales[0], clock[T_END], clock[SHARP], memory[0], sums[6] = how[0], how[1], SHARPEST, 0.5, inf
+    crowd, begin = 0, inf
     row, t, status, steps, turns = 0, 0.0, -1, 0, law[FIRST] == -inf
     while row < len(times) and times[row] <= 0.0:
         tell(0.0, y[0], y[1], law, data, history, row)
@@ -139,6 +164,11 @@ def follow(
         scales[1] = max(scales[1], abs(y[1]))
         t, steps = end, steps + 1
         status = 0 if status < 0 and t >= how[1] else status
+        crowd += 1
+        if law[TORQUE] == FUNCTION and crowd == CROWD:
+            if status < 0 and abs(y[0] - begin) < NARROW and slides(t, y, law, data):
+                break
+            crowd, begin = 0, y[0]
     return told(status, t, steps, y, law, data, sums, numbers)
 
 
