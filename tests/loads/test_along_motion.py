@@ -118,10 +118,30 @@ def test_what_makers_refuse(make, message):
 )
 def test_slips_of_units(make, words, monkeypatch):
     monkeypatch.setattr("desaxe.mechanism.slips.WARNED", set())
+    monkeypatch.setattr("desaxe.mechanism.public.LOOKS", [1000])
     with pytest.warns(dx.UnitWarning) as caught:
         make()
     assert words in str(caught[0].message)
     assert caught[0].filename == __file__
+
+
+def test_sums_of_the_same_columns_do_not_share_what_is_remembered():
+    """A sum of one table, one of two and one with a function, each after the other, at points and arrays."""
+    damper, resistance = dx.damper(linear=3.0, quadratic=1.0), dx.over_V([-2.0, 2.0], [8.0, -8.0])
+    throttle = dx.over_V(lambda V_C: -V_C)
+    theta, V_C = np.array([1.0, 2.0]), dx.evaluate("V_C", theta=np.array([1.0, 2.0]), **TURNING)
+    forces = [
+        (2.0 * damper, -6.0 * V_C - 2.0 * V_C * abs(V_C)),
+        (damper + resistance, -7.0 * V_C - V_C * abs(V_C)),
+        (damper + throttle, -4.0 * V_C - V_C * abs(V_C)),
+        (damper + damper + damper, -9.0 * V_C - 3.0 * V_C * abs(V_C)),
+    ]
+    for load, force in [*forces, *forces[::-1]]:
+        expected = dx.evaluate("T_in", theta=theta, F_Y=force, **TURNING)
+        np.testing.assert_allclose(
+            dx.evaluate("T_in", theta=theta, F_Y=load, **TURNING), expected, rtol=1e-12
+        )
+        assert dx.evaluate("T_in", theta=1.0, F_Y=load, **TURNING) == pytest.approx(expected[0], rel=1e-12)
 
 
 def test_loads_and_motors_are_called_with_texts():

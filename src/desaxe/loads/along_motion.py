@@ -350,6 +350,11 @@ class SumOfLoads(OfMotion):
         return tuple(dict.fromkeys(column for _, load in self.terms for column in needs_of(load)))
 
     @property
+    def variant(self) -> tuple[Any, ...]:
+        """The key of the load in a request: its members have a table each, or are functions."""
+        return (*super().variant, *(load.variant for load in self.members))
+
+    @property
     def members(self) -> tuple[Load, ...]:
         """The loads that are summed."""
         return tuple(load for _, load in self.terms)
