@@ -45,6 +45,16 @@ def test_a_derivative_of_a_peak_and_a_peak_of_a_derivative_do_not_share_a_name()
     assert float(found.peak_max_T_in_wrt_ec[0]) != float(found.peak_min_T_in_wrt_ec[0])
 
 
+def test_a_peak_under_a_load_over_the_speed_has_its_derivative_by_the_speed():
+    """In a sweep it had none: no mass needs the speed, but the load does."""
+    damper = dx.over_V([-2.0, 0.0, 2.0], [-80.0, 0.0, 200.0])
+    inputs = {"ec": [0.01, 0.02], "AB": 0.1, "BC": 0.3, "F_Y": damper}
+    at = {speed: dx.peak("T_in", omega0=speed, **inputs)["value"] for speed in (10.0 - 1e-4, 10.0 + 1e-4)}
+    low, high = at.values()
+    swept = dx.sweep([], store=None, peaks="T_in", omega0=10.0, **inputs)
+    np.testing.assert_allclose(swept.peak_absmax_T_in_wrt_omega0, (high - low) / 2e-4, rtol=1e-7)
+
+
 @pytest.mark.parametrize("units", ["mm, deg, rpm, kN, N mm", {"torque": "kN m", "length": "cm"}])
 @pytest.mark.parametrize("name", ["T_in", "a_C", "T_in_wrt_ec"])
 def test_a_machine_has_the_gradients_of_its_sweep_in_the_units_of_its_peaks(units, name):

@@ -1,7 +1,6 @@
 """Loads and conditions of designs over the crank angle: kinks, jumps, and the nodes that a search needs."""
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 from math import inf
 from typing import Any, NamedTuple
 
@@ -9,13 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.under_loads.arcs import Arcs, arcs_of, meeting_in_turn
-from ..loads.along_motion import OfMotion, members_of, speeds_of
+from ..loads.along_motion import SPEEDS, OfMotion, members_of, speeds_of
 from ..loads.angles import meeting_and_bent
 from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.closed.angles import dead_centres, repeated
+from ..runtime.request import request
 from ..support.roots import sign_changes
 from .nodes import Array
-from .special import AT_KINK, ROUNDED, SearchedDesigns, own_nodes
+from .programs import Evaluations, Search
+from .search import sign_changes_of
+from .special import AT_KINK, ROUNDED, SearchedDesigns, are_special, even_nodes, own_nodes
 
 # What keeps a kink where it is: angle, position, dead centre, distance from one, speed, conditions.
 FIXED, CROSSING, TURNING, FROM_OUTER, FROM_INNER, SPEED, CONDITION = range(7)
@@ -93,7 +95,7 @@ def course_of(designs: SearchedDesigns) -> Course:
             parts.append(
                 _over_Y(load, None, designs, *meeting_and_bent(load, lengths, designs.branch), turning)
             )
-    parts += _at_speeds(speeds_of(members), designs, turning)
+    parts += _at_speeds(speeds_of(members), designs)
     known = [*(angles for part in parts for angles, _ in (*part.kinks, *part.jumps)), turning]
     conditions = _conditions(designs, np.concatenate(known, axis=1)) if designs.conditions else []
     parts += conditions
@@ -126,7 +128,11 @@ def _conditions(designs: SearchedDesigns, known: Array) -> list[_Part]:
     nodes = np.sort(np.concatenate([nodes, edges - room, edges + room], axis=1), axis=1)
     parts = []
     for number, name in enumerate(designs.conditions):
-        angles = sign_changes(partial(_value, designs, name), nodes)
+
+        def value(rows: NDArray[np.intp], theta: Array, name: str = name) -> Any:
+            return designs.values((name,), rows, theta)[name]
+
+        angles = sign_changes(value, nodes)
         at_load = (np.abs(angles[:, :, None] - known[:, None]) <= AT_KINK).any(axis=2)
         angles = np.where(at_load, np.nan, angles)
         marks = [(angles, CONDITION + number)]
@@ -134,29 +140,27 @@ def _conditions(designs: SearchedDesigns, known: Array) -> list[_Part]:
     return parts
 
 
-def _at_speeds(speeds: Sequence[float], designs: SearchedDesigns, turning: Array) -> list[_Part]:
+def _at_speeds(speeds: Sequence[float], designs: SearchedDesigns) -> list[_Part]:
     """The angles at which the slider has the speeds of a table: there is a kink."""
     if not speeds:
         return []
-    start = np.full((designs.size, 1), designs.theta[0])
-    edges = np.where(np.isfinite(turning), np.clip(turning, *designs.theta), start)
-    nodes = np.sort(np.concatenate([own_nodes(designs)[0], edges], axis=1), axis=1)
-    free = designs._replace(loads={})
+    inputs = {**dict.fromkeys(SPEEDS), "theta": 0.0, **designs.columns}
+    velocity = request(("V_C", "V_C_wrt_theta"), inputs, designs.branch, "standard")
+    values = Evaluations(Search(velocity.names[0], (), velocity.form, velocity.fixed))
+    block = values.block(designs, np.arange(designs.size))
+    nodes = own_nodes(designs)[0].T if are_special(designs).any() else even_nodes(designs)[:, None]
     parts = []
     for speed in speeds:
 
-        def value(rows: NDArray[np.intp], theta: Array, speed: float = speed) -> Array:
-            return np.asarray(_value(free, "V_C", rows, theta) - speed)
+        def excess(theta: Array, block: Array, speed: float = speed) -> tuple[Array, Array]:
+            value, slope = values.curve(theta, block)
+            return value - speed, slope
 
-        angles = sign_changes(value, nodes)
+        angles = sign_changes_of(excess, nodes, block)
         room = BESIDE * np.spacing(1.0 + np.abs(angles))
         beside = np.concatenate([angles, angles - room, angles + room], axis=1)
         parts.append(_Part(beside, [(angles, SPEED)], []))
     return parts
-
-
-def _value(designs: SearchedDesigns, name: str, rows: NDArray[np.intp], theta: Array) -> Any:
-    return designs.values((name,), rows, theta)[name]
 
 
 def _over_theta(load: Load, designs: SearchedDesigns) -> _Part:

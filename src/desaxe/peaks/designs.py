@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from ..compiler.passes.guard import BAD_INPUT
 from ..definitions.conditions import conditions_of
 from ..evaluation.arrays import are_good
-from ..loads.along_motion import with_derivatives
+from ..loads.along_motion import SPEEDS, OfMotion, with_derivatives
+from ..loads.angles import cycle
 from ..loads.load import Load
 from ..mechanism.catalogue import has, of_design, quantity
 from ..mechanism.constants import constants
@@ -23,12 +24,10 @@ from ..runtime.request import Request, accuracy_of, is_steady, request
 from ..runtime.threads import have_wide_margins, run_parts
 from ..support.progress import Portions, progress_bar
 from .course import course_of
-from .differences import with_slopes
-from .evaluations import Evaluations
 from .jumps import at_jumps
-from .loaded import Rows, ValuesUnderLoads
+from .loaded import Rows, ValuesUnderLoads, with_slopes
 from .nodes import Array, classes, shared_nodes
-from .programs import Search, needs_own
+from .programs import Evaluations, Search, needs_own
 from .search import search_block, sign_changes_of
 from .special import (
     AT_KINK,
@@ -91,6 +90,28 @@ class Sought(NamedTuple):
     def numbers(self) -> list[str]:
         """The inputs that are numbers or arrays."""
         return [name for name in self.plan.needs if name not in self.loads]
+
+
+def sought_of(
+    name: str,
+    kind: str,
+    inputs: dict[str, Any],
+    loads: Mapping[str, Load],
+    branch: int,
+    accuracy: Any,
+    ends: tuple[float, float] | None = None,
+) -> Sought:
+    """The extreme values of a request, under those loads that it depends on; by default over their cycle."""
+    plan = plan_of(name, {**inputs, **loads}, branch, accuracy)
+    acting = {n: load for n, load in loads.items() if n in plan.parameters}
+    if any(isinstance(load, OfMotion) and load.follows_speed for load in acting.values()):
+        steady = is_steady(inputs["alpha"])
+        speeds = [n for n in SPEEDS if inputs[n] is not None and not (n == "alpha" and steady)]
+        parameters, needs = (
+            tuple(dict.fromkeys((*names, *speeds))) for names in (plan.parameters, plan.needs)
+        )
+        plan = plan._replace(parameters=parameters, needs=needs)
+    return Sought(plan, kind, int(branch), ends or (0.0, cycle(acting)), None, acting)
 
 
 class Work(NamedTuple):
@@ -325,12 +346,11 @@ def _checked(designs: SearchedDesigns) -> Checked:
     """The designs with NaN for invalid values, which would give a finite, wrong result."""
     bad = np.zeros(designs.size, np.bool_)
     columns = dict(designs.columns)
-    if designs.size > 1:  # one was checked where it came in
-        for name, column in columns.items():
-            fine = are_good(name, column)
-            if not fine.all():
-                columns[name] = np.where(fine, column, np.nan)
-                bad |= ~fine
+    for name, column in columns.items():
+        fine = are_good(name, column)
+        if not fine.all():
+            columns[name] = np.where(fine, column, np.nan)
+            bad |= ~fine
     designs = designs._replace(columns=columns)
     return Checked(designs, bad, are_special(designs))
 

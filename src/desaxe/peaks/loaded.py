@@ -7,24 +7,28 @@ nodes on both.
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import replace
+from math import inf
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.arrays import evaluate_arrays
 from ..evaluation.under_loads.request import MOTION, LoadInputs, plan_for, under_loads
-from ..loads.along_motion import SPEEDS, OfMotion
+from ..loads.along_motion import SPEEDS, STENCIL, STEP, OfMotion
+from ..loads.function import FunctionOverTheta
 from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.load_lines import LoadLines, Total, Under
 from ..mechanism.names import LENGTHS, sensitivity
 from .course import Course
-from .evaluations import compiled, totals_of
 from .nodes import Array
-from .programs import Search, needs_own
+from .programs import Search, compiled, needs_own, totals_of
 from .special import SearchedDesigns
 
 Rows = NDArray[np.intp]
+PLACES = np.arange(-4.0, 5.0)  # of nine values in steps, and the slope of their polynomial by powers
+BY_POWERS = np.arange(1.0, 9.0)[:, None] * np.linalg.inv(np.vander(PLACES, increasing=True))[1:]
 
 
 class ValuesUnderLoads:
@@ -156,3 +160,52 @@ def over_theta_at(loads: Mapping[str, Load], theta: Array) -> dict[str, Any]:
             for key, values in zip((name, f"{name}_by_theta"), load.both(theta.reshape(-1)), strict=True):
                 found[key] = values.reshape(theta.shape)
     return found
+
+
+# ---- functions without a derivative ------------------------------------------------------------------
+
+
+def with_slopes(loads: Mapping[str, Load], low: float, high: float) -> dict[str, Load]:
+    """The loads, with the derivative of a user's function by differences where it was not given.
+
+    They only lead the search: what it finds is a value of the function itself.
+    """
+    return {
+        name: replace(load, derivative=Differences(load, _nodes(load, low, high)).at)
+        if isinstance(load, FunctionOverTheta) and not load.has_slope
+        else load
+        for name, load in loads.items()
+    }
+
+
+def _nodes(load: FunctionOverTheta, low: float, high: float) -> tuple[float, ...]:
+    """The nodes of a function in a range, and one or more on either side."""
+    return tuple(load.nodes(low - 2.0 * load.period, high + 2.0 * load.period, smooth=False))
+
+
+class Differences(NamedTuple):
+    """The derivative of a load by differences; `nodes` are those at which it may jump."""
+
+    load: FunctionOverTheta
+    nodes: tuple[float, ...]
+
+    def at(self, theta: Any) -> Any:
+        """The derivative at a number or an array."""
+        theta = np.asarray(theta, float)
+        if self.nodes:
+            return self._between(theta)
+        total = np.zeros(theta.shape)
+        for steps, weight in STENCIL:
+            ahead, behind = (self.load.value(theta + side * steps * STEP) for side in (1.0, -1.0))
+            total += weight * (ahead - behind)
+        return total / STEP
+
+    def _between(self, theta: Any) -> Any:
+        """The derivative from values between the nodes on both sides: none from beyond a jump."""
+        after = np.searchsorted(self.nodes, theta, side="right")
+        low, high = np.array(self.nodes)[after - 1], np.nextafter(self.nodes, -inf)[after]
+        step = np.minimum(STEP, 0.125 * (high - low))
+        centre = np.clip(theta, low + 4.0 * step, high - 4.0 * step)
+        found = self.load.value(np.clip(centre + PLACES.reshape(-1, *[1] * theta.ndim) * step, low, high))
+        powers = ((theta - centre) / step) ** np.arange(8.0).reshape(-1, *[1] * theta.ndim)
+        return (np.tensordot(BY_POWERS, found, axes=1) * powers).sum(axis=0) / step

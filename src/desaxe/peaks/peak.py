@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.under_loads.loaded import loads_of
-from ..loads.along_motion import SPEEDS, OfMotion
-from ..loads.angles import cycle
 from ..loads.load import LoadWarning
 from ..loads.resolve import VARIABLE
 from ..mechanism.closed import TURN
@@ -28,7 +26,7 @@ from ..mechanism.status import PeakStatus
 from ..runtime.request import as_number, check_common, check_sliders, is_steady
 from ..support.answer import Answer
 from ..support.shown import shown as shown_value
-from .designs import KINDS, PeakPlan, Sought, peaks_of_designs, plan_of, search_of
+from .designs import KINDS, PeakPlan, peaks_of_designs, search_of, sought_of
 from .nodes import Array
 
 MOST_TURNS = 1000  # of a range of crank angles
@@ -95,10 +93,10 @@ def peak(
     if not isinstance(kind, str) or kind not in KINDS:
         raise ValueError(f"kind = {shown_value(kind)}: it is one of {', '.join(KINDS)}")
     given = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega, **loads}
+    ends = None if theta is ONE_TURN else _range(theta, name)
     if sliders is not None:
         check_sliders(sliders)
         given["alpha"] = None if is_steady(alpha) else alpha
-        ends = None if theta is ONE_TURN else _range(theta, name)
         whole: dict[str, Any] = sliders.peak(
             name, kind, ends, {n: v for n, v in given.items() if v is not None}
         )
@@ -106,21 +104,17 @@ def peak(
     check_inputs("peak", loads, INPUTS_OF_PEAK)
     check_common(given, branch, threads)
     _, varying = loads_of(given)
-    plan = plan_of(name, given, branch, accuracy)
-    varying = {n: load for n, load in varying.items() if n in plan.parameters}
-    if any(isinstance(load, OfMotion) and load.follows_speed for load in varying.values()):
-        speeds = [n for n in SPEEDS if given[n] is not None and not (n == "alpha" and is_steady(alpha))]
-        plan = plan._replace(parameters=tuple(dict.fromkeys((*plan.parameters, *speeds))))
-        plan = plan._replace(needs=tuple(dict.fromkeys((*plan.needs, *speeds))))
-    ends = _range((0.0, cycle(varying)) if theta is ONE_TURN else theta, name)
-    sought = Sought(plan, kind, int(branch), ends, threads, varying)
+    sought = sought_of(name, kind, given, varying, branch, accuracy, ends)._replace(threads=threads)
+    plan = sought.plan
+    if ends is None:
+        _range(sought.ends, name)  # the cycle of loads may have too many turns
     _warn_of_columns(given, plan)
     if "omega0" in plan.needs and omega0 is None:
         given["omega0"] = 0.0 if "omega0" not in plan.parameters else None  # which only the status uses
     arrays = {n: as_array(n, given.get(n), plan.needs, (name,)) for n in sought.numbers}
     shape = broadcast_shape(arrays)
     columns = {n: _flat(a, shape) for n, a in arrays.items()}
-    search = search_of(plan, arrays, ends)
+    search = search_of(plan, arrays, sought.ends)
     found = peaks_of_designs(sought, search, columns)
     return Answer(_shaped(found, shape), partial(units_of_extreme, name), PeakStatus)
 

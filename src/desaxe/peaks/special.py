@@ -115,13 +115,18 @@ def _stall(omega0: Array, alpha: Array) -> Array:
         return -(omega0 * omega0) / (2.0 * alpha)
 
 
+def even_nodes(designs: SearchedDesigns) -> Array:
+    """Crank angles at equal steps."""
+    low, high = designs.theta
+    return np.linspace(low, high, int(UNIFORM * max(1.0, (high - low) / TURN)) + 1)
+
+
 def own_nodes(designs: SearchedDesigns) -> tuple[Array, list[tuple[int, float]]]:
     """Crank angles for each design, ascending, and its limit angles inside the range."""
     low, high = designs.theta
-    turns = max(1.0, (high - low) / TURN)
     first, last = int(np.floor(low / np.pi)) - 1, int(np.ceil(high / np.pi)) + 1
     marks = np.array([low, high, *(np.pi * (0.5 + k) for k in range(first, last))])
-    common = np.append(np.linspace(low, high, int(UNIFORM * turns) + 1), marks[:, None] + AROUND)
+    common = np.append(even_nodes(designs), marks[:, None] + AROUND)
     own = _limit_angles(designs)
     inside = np.argwhere((low <= own) & (own <= high)).tolist()
     ends = [(row, float(own[row, k])) for row, k in inside]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import prod
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,11 +13,11 @@ from ..evaluation.labels import Output, attributes, side_attributes
 from ..evaluation.step import Step
 from ..loads.angles import cycle
 from ..mechanism.names import sensitivity
-from ..mechanism.own import Definition
+from ..mechanism.own import Definition, using
 from ..mechanism.quantity_units import SI
 from ..mechanism.status import PeakStatus
-from ..peaks.block import GRADIENT, PeakBlock, peak_block
-from ..peaks.designs import KINDS, Sought, plan_of
+from ..peaks.designs import KINDS, Sought, peaks_of_designs, search_of, sought_of
+from ..peaks.programs import Search
 
 Array = NDArray[Any]
 WORDS = {"absmax": "largest magnitude", "max": "maximum", "min": "minimum"}
@@ -38,52 +39,60 @@ class PeakStep(Step):
     Its variables are `peak_absmax_a_C`, `peak_absmax_a_C_theta`, ..., `peak_absmax_a_C_wrt_ec`.
     """
 
-    block: PeakBlock
+    sought: Sought
+    search: Search
+    scalars: tuple[tuple[str, float], ...]  # the inputs that are no dimensions
     state: bool
 
     @property
     def quantity(self) -> str:
         """The quantity whose peak it is."""
-        return self.block.sought.plan.name
+        return self.sought.plan.name
 
     @property
     def own(self) -> tuple[Definition, ...]:
         """The definitions that it needs."""
-        return self.block.search.form.own
+        return self.search.form.own
 
     @property
     def identity(self) -> str:
-        """A text that tells the step from all others."""
-        return f"{self!r} {self.block.identity}"
+        """A text that tells the step from all others, by what its loads are too."""
+        return " ".join([repr(self), *(load.identity for load in self.sought.loads.values())])
 
     @property
     def outputs(self) -> dict[str, Output]:
         """The variables by name: their types and CF attributes."""
+        slopes = (f"wrt_{name}" for name in self.search.parameters)
+        dtypes = {**dict.fromkeys(("value", "theta"), np.float64), "side": np.int8}
+        dtypes |= {**dict.fromkeys(slopes, np.float64), "status": np.int8}
         return {
-            self._variable(output): Output(dtype, self._attributes(output))
-            for output, dtype in self.block.dtypes.items()
+            self._variable(output): Output(np.dtype(dtype), self._attributes(output))
+            for output, dtype in dtypes.items()
         }
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The variables of a block, from the values along each of its dimensions."""
-        grids = np.meshgrid(*(values[name] for name in self.dims), indexing="ij", sparse=True)
-        arrays = dict(zip(self.dims, grids, strict=True))
-        block = self.block._replace(sought=self.block.sought._replace(threads=threads or 1))
-        found = block.compute(*(arrays[name] for name in block.names))
-        return {self._variable(output): array for output, array in found.items()}
+        grids = np.meshgrid(*(np.asarray(values[name], np.float64) for name in self.dims), indexing="ij")
+        shape = tuple(values[name].size for name in self.dims)
+        columns = {name: grid.reshape(-1) for name, grid in zip(self.dims, grids, strict=True)}
+        columns |= {name: np.full(prod(shape), value) for name, value in self.scalars}
+        with using(self.own):
+            peaks = peaks_of_designs(self.sought._replace(threads=threads or 1), self.search, columns)
+        gradient = {f"wrt_{name}": slope for name, slope in peaks.pop("gradient").items()}
+        return {self._variable(n): array.reshape(shape) for n, array in {**peaks, **gradient}.items()}
 
     def _variable(self, output: str) -> str:
-        stem = f"peak_{self.block.sought.kind}_{self.quantity}"
-        return stem + ("" if output == "value" else f"_{output.replace(GRADIENT, 'wrt_', 1)}")
+        stem = f"peak_{self.sought.kind}_{self.quantity}"
+        return stem if output == "value" else f"{stem}_{output}"
 
     def _attributes(self, output: str) -> dict[str, Any]:
-        name, kind = self.quantity, self.block.sought.kind
+        name, kind = self.quantity, self.sought.kind
         if output == "value":
             own = attributes(name, self.state)
             words = f"{WORDS[kind]} over theta of {own['long_name']}"
             return {**own, "long_name": words, "quantity": name}
-        if output.startswith(GRADIENT):
-            return slope_attributes(name, output.removeprefix(GRADIENT))
+        if output.startswith("wrt_"):
+            return slope_attributes(name, output.removeprefix("wrt_"))
         return attributes_beside()[output]
 
 
@@ -135,15 +144,15 @@ def peak_steps(
 
 
 def _peak_step(one: PeakRequest, outer: Outer, branch: int, accuracy: Any) -> PeakStep:
-    given = {"alpha": 0.0, "omega": None, "omega0": None, **outer.given}
-    given.pop("theta", None)
-    plan = plan_of(one.name, {**given, **outer.loads}, branch, accuracy)
-    loads = {n: load for n, load in outer.loads.items() if n in plan.parameters}
-    sought = Sought(plan, one.kind, branch, one.theta, loads=loads)
+    inputs = {"alpha": 0.0, "omega": None, "omega0": None, **outer.given}
+    inputs.pop("theta", None)
+    sought = sought_of(one.name, one.kind, inputs, outer.loads, branch, accuracy, one.theta)
     needs = sought.numbers
     for name in needs:
         if name not in outer.axes:
-            raise TypeError(f"peak of {one.name}: {name} is missing (needed: {', '.join(plan.needs)})")
+            raise TypeError(f"peak of {one.name}: {name} is missing (needed: {', '.join(sought.plan.needs)})")
     dims = tuple(name for name in outer.dimensions if name in needs)
     scalars = {name: float(outer.axes[name].reshape(-1)[0]) for name in needs if name not in dims}
-    return PeakStep(dims, peak_block(sought, scalars, dims), outer.given.get("omega") is not None)
+    varying = {name: np.array(scalars[name]) if name in scalars else np.zeros(2) for name in needs}
+    search = search_of(sought.plan, varying, sought.ends)  # an input of 0 is folded where it is a number
+    return PeakStep(dims, sought, search, tuple(scalars.items()), outer.given.get("omega") is not None)
