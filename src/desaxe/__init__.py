@@ -34,72 +34,7 @@ if TYPE_CHECKING:
     from .scenes.explain.explain import explain as explain
     from .scenes.export.compile import compile as compile
     from .scenes.scene import scene as scene
-    from .typed import (
-        counterweight as counterweight,
-    )
-    from .typed import (
-        crossings as crossings,
-    )
-    from .typed import (
-        design_map as design_map,
-    )
-    from .typed import (
-        drive as drive,
-    )
-    from .typed import (
-        enclose as enclose,
-    )
-    from .typed import (
-        evaluate as evaluate,
-    )
-    from .typed import (
-        events as events,
-    )
-    from .typed import (
-        explore as explore,
-    )
-    from .typed import (
-        feasibility as feasibility,
-    )
-    from .typed import (
-        fit as fit,
-    )
-    from .typed import (
-        function as function,
-    )
-    from .typed import (
-        grid as grid,
-    )
-    from .typed import (
-        harmonics as harmonics,
-    )
-    from .typed import (
-        inverse as inverse,
-    )
-    from .typed import (
-        optimize as optimize,
-    )
-    from .typed import (
-        peak as peak,
-    )
-    from .typed import (
-        simulate as simulate,
-    )
-    from .typed import (
-        solve as solve,
-    )
-    from .typed import (
-        steady as steady,
-    )
-    from .typed import (
-        sweep as sweep,
-    )
-    from .typed import (
-        synthesize as synthesize,
-    )
-    from .typed import (
-        tolerance as tolerance,
-    )
+    from .typed import *
 
 # Public name -> its module; `equation` is SymPy's and comes with the extra `derive`.
 PUBLIC = {
