@@ -385,6 +385,25 @@ def test_what_may_be_meant_is_no_slip(reader, inputs):
         WARNING[reader](first, inputs[first], **{name: inputs[name] for name in others})
 
 
+DESIGN = {"ec": 0.0, "AB": 0.1, "BC": 0.3}
+WORDS = ["Y", "theta=0:360:5", "ec=0", "AB=0.1", "BC=0.3"]
+OF_SEVERAL = [
+    (lambda: dx.evaluate("Y", theta=[0, 90, 360], **DESIGN), 'theta = "360 deg"'),
+    (lambda: dx.peak("Y", theta=(0, 180), **DESIGN), 'theta = "180 deg"'),
+    (lambda: dx.solve(over={"AB": (30, 60)}, stroke=80, ec=0, BC=200.5), 'AB = "60 mm"; BC = 200.5 m'),
+    (lambda: dx.Crankshaft(dx.Machine(**DESIGN), phase=[0, 180, 180, 0]), 'phase = "180 deg"'),
+    (lambda: dx.Crankshaft(dx.Machine(**DESIGN), phase=[0, 1]).replace(**{"phase[1]": 90}), '"90 deg"'),
+    (lambda: main(["evaluate", *WORDS]), 'theta = "360 deg"'),
+    (lambda: main(["grid", *WORDS, "--units", "rpm"]), 'theta = "360 deg"'),
+]
+
+
+@pytest.mark.parametrize(("call", "words"), OF_SEVERAL)
+def test_slips_in_ranges_lists_and_of_crankshafts(call, words):
+    with pytest.warns(dx.UnitWarning, match=re.escape(words)):
+        call()
+
+
 def test_every_function_with_inputs_looks_for_slips():
     functions = {name: getattr(dx, name) for name in dx.PUBLIC if inspect.isfunction(getattr(dx, name))}
     signatures = {name: inspect.signature(function).parameters for name, function in functions.items()}

@@ -15,6 +15,7 @@ from ..mechanism.keywords import check_inputs
 from ..mechanism.messages import errors_in, listed, named
 from ..mechanism.quantity_units import UnitSystem
 from ..mechanism.read import read, read_array
+from ..mechanism.slips import warn_of_slips
 from ..runtime.request import MachineSpeed
 from ..scenes.content import Content
 from ..support.files import as_path
@@ -80,8 +81,9 @@ class Crankshaft(Machine):
         if not machines or wrong is not None:
             raise TypeError("Crankshaft: expected a Machine or a list of them, with one slider each")
         system = machines[0].units if units is None else UnitSystem.read(units)
+        angles = {"phase": phase, "bank": bank, "firing": firing, "position": position}
+        warn_of_slips({**angles, "spacing": spacing}, system)
         with errors_in(system):
-            angles = {"phase": phase, "bank": bank, "firing": firing, "position": position}
             rows = {n: _array(n, v, system) for n, v in angles.items() if v is not None}
             count = max(len(machines), *(row.size for row in rows.values()))
             phases, banks = (_row(n, rows[n], count) for n in ("phase", "bank"))
@@ -127,6 +129,7 @@ class Crankshaft(Machine):
     def replace(self, **inputs: Any) -> "Crankshaft":
         """The crankshaft with other inputs: of all sliders, "AB", or of one, "AB[2]", "phase[1]", ..."""
         system = UnitSystem.read(inputs.pop("units", self.units))
+        warn_of_slips(inputs, system)
         with errors_in(system):
             si = {key: in_si(system, key, value) for key, value in inputs.items()}
             others = {n: v for n, v in si.items() if n not in STATE}

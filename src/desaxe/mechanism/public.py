@@ -1,6 +1,6 @@
 """Public functions of `desaxe`: those of its rooms, which warn of slips of units in their keywords."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import wraps
 from math import inf
 from typing import Any, ParamSpec, TypeVar
@@ -24,9 +24,9 @@ def warning(function: Callable[P, T]) -> Callable[P, T]:
             LOOKS[0] -= 1
             if not all(map(_is_harmless, inputs, inputs.values())):
                 with IMPORTS:
-                    from .slips import warn_once
+                    from .slips import warn_of_slips
 
-                warn_once(inputs)
+                warn_of_slips(inputs, inputs=inputs, once=True)
         try:
             return function(*args, **inputs)
         except TypeError as error:
@@ -44,4 +44,4 @@ def _is_harmless(name: str, value: Any) -> bool:
         return name not in HARMLESS or -HARMLESS[name] <= value <= HARMLESS[name]
     if name in FORCES:
         return bool(getattr(value, "largest", inf) <= HARMLESS[name])
-    return not isinstance(value, (str, tuple))
+    return not isinstance(value, (str, tuple, list, Mapping))

@@ -1,8 +1,8 @@
 """Plain numbers that are almost surely in another unit than they are taken for, such as a crank of 125 m.
 
-A warning, never an error, for single numbers that a person has typed, in a few digits: never for arrays and
-their elements. A force has no size of its own by which a slip would show; but none is larger than what the
-rod could carry.
+A warning, never an error, for numbers that a person has typed, in a few digits: also the ends of ranges and
+the largest number of a list, never an array. A force has no size of its own by which a slip would show; but
+none is larger than what the rod could carry.
 """
 
 import sys
@@ -20,23 +20,14 @@ from .inputs import INPUTS
 from .quantity_units import SI, UnitSystem
 from .ranges import Between, PlusMinus
 from .read import number_of
-from .typical import (
-    FARTHEST,
-    FORCES,
-    GRAVITY,
-    KINDS,
-    MOST_PERCENT,
-    SHARE,
-    SIZE,
-    TURNS,
-    Typical,
-)
+from .typical import FARTHEST, FORCES, GRAVITY, KINDS, MOST_PERCENT, SHARE, SIZE, TURNS, Typical
 
 LINKS, SHORTEST = ("AB", "BC"), 5e-4  # m: shorter ones are in metres where another unit is meant
 WEAKEST = 0.1  # m/s^2: a gravity below is in m/s^2 where another unit is meant
 SMALL_OFFSET = 5e-4  # of the crank: no smaller one is meant to be one
 LARGE_OFFSET = 5.0  # of crank and rod: a larger one is in millimetres
 BESIDE = ("AB", "BC", "alpha", *FORCES)  # inputs beside which others are a slip
+MOST_LOOKED_AT = 1000  # numbers of a list
 STRONGEST = 1e9  # Pa: of steel, in a rod half as thick as it is long; those of presses carry some 2e7
 WARNED: set[Any] = set()  # kinds of slips in calls of functions
 
@@ -52,41 +43,27 @@ class Slip(NamedTuple):
     words: str
 
 
-def warn_once(inputs: Mapping[str, Any]) -> None:
-    """Warn of slips in the keywords of a public function; of each kind once a process."""
-    slips = [slip for slip in slips_in(inputs, SI, inputs) if slip.kind not in WARNED]
-    if slips:
-        WARNED.update(slip.kind for slip in slips)
-        _warn(slips, 4)
-
-
 def warn_of_slips(
     written: Mapping[str, Any],
     units: UnitSystem = SI,
     stacklevel: int = 3,
     inputs: Mapping[str, Any] = MappingProxyType({}),
+    once: bool = False,
 ) -> None:
-    """Warn of all slips in one warning; the arguments are those of `slips_in`."""
-    slips = slips_in(written, units, inputs)
-    if slips:
-        _warn(slips, stacklevel + 1)
-
-
-def _warn(slips: list[Slip], stacklevel: int) -> None:
-    text = "; ".join(slip.words for slip in slips)
-    warnings.warn(f"almost surely a slip: {text}", UnitWarning, stacklevel=stacklevel)
-
-
-def slips_in(
-    written: Mapping[str, Any], units: UnitSystem = SI, inputs: Mapping[str, Any] = MappingProxyType({})
-) -> list[Slip]:
-    """The plain numbers, by input, that are almost surely slips; `units` are what they mean.
+    """Warn, in one warning, of plain numbers that are almost surely slips; `units` are what they mean.
 
     inputs   in SI units or as texts, beside which an offset is too small or too large, a force too large
+    once     of each kind once a process
     """
     inputs = {name: _in_si(name, value) for name, value in inputs.items() if name in BESIDE}
-    slips = [slip for name, value in _alone(written) if (slip := _slip(name, value, units, inputs))]
-    return [*slips, *_offset(written.get("ec"), units, inputs), *_forces(inputs, units)]
+    slips = [slip for name, value in _typed(written) if (slip := _slip(name, value, units, inputs))]
+    slips += [*_offset(written.get("ec"), units, inputs), *_forces(inputs, units)]
+    if once:
+        slips = [slip for slip in slips if slip.kind not in WARNED]
+        WARNED.update(slip.kind for slip in slips)
+    if slips:
+        text = "; ".join(slip.words for slip in slips)
+        warnings.warn(f"almost surely a slip: {text}", UnitWarning, stacklevel=stacklevel)
 
 
 def _in_si(name: str, value: Any) -> Any:
@@ -97,28 +74,48 @@ def _in_si(name: str, value: Any) -> Any:
         return None
 
 
-def _offset(ec: Any, units: UnitSystem, inputs: Mapping[str, Any]) -> Iterator[Slip]:
+def _typed(written: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    """The numbers that a person typed, by input: of a range both ends, of a list the largest."""
+    for name, value in written.items():
+        if isinstance(value, Mapping):
+            yield from _typed(value)
+            continue
+        numbers = _numbers(value)
+        if not isinstance(value, Between):
+            numbers = [max(numbers, key=abs)] if numbers else []
+        yield from ((name, number) for number in numbers if _is_typed(number))
+
+
+def _numbers(value: Any) -> list[float]:
+    """The plain numbers that a value has; of one with a tolerance the value."""
+    if isinstance(value, (list, tuple)):
+        parts = value[:1] if isinstance(value, PlusMinus) else [*value[:MOST_LOOKED_AT], *value[-1:]]
+    else:
+        parts = (value,)
+    plain = (plain_number(part) if isinstance(part, str) else part for part in parts)
+    return [part for part in plain if isinstance(part, (int, float)) and type(part) in (int, float)]
+
+
+def _offset(written: Any, units: UnitSystem, inputs: Mapping[str, Any]) -> Iterator[Slip]:
     """An offset that is tiny beside the crank, and none in metres, or in metres and far beyond both links."""
     conversion, AB, BC = units.of("ec"), inputs.get("AB"), inputs.get("BC")
-    ec = plain_number(ec) if isinstance(ec, str) else ec
-    if type(ec) not in (int, float) or type(AB) is not float or abs(ec) > sys.float_info.max:
+    if not isinstance(AB, float) or isinstance(written, (list, tuple)):
         return
-    si = abs(conversion.to_si(float(ec)))
-    if conversion.si != 1 and 0.0 < si < SMALL_OFFSET * AB < abs(ec):
-        yield Slip("small ec", f'ec = {ec:.6g} {conversion.unit}, write ec = "{ec:.6g} m"')
-    far = type(BC) is float and LARGE_OFFSET * (AB + BC) < si <= FARTHEST
-    if conversion.si == 1 and far and _is_typed(ec):
-        yield Slip(SIZE, f'ec = {ec:.6g} m beside links of {AB:.6g} and {BC:.6g} m, write ec = "{ec:.6g} mm"')
+    for ec in _numbers(written):
+        si = abs(conversion.to_si(float(ec))) if abs(ec) <= sys.float_info.max else 0.0
+        if conversion.si != 1 and 0.0 < si < SMALL_OFFSET * AB < abs(ec):
+            yield Slip("small ec", f'ec = {ec:.6g} {conversion.unit}, write ec = "{ec:.6g} m"')
+        far = isinstance(BC, float) and LARGE_OFFSET * (AB + BC) < si <= FARTHEST
+        if conversion.si == 1 and far and _is_typed(ec):
+            beside = f"ec = {ec:.6g} m beside links of {AB:.6g} and {BC:.6g} m"
+            yield Slip(SIZE, f'{beside}, write ec = "{ec:.6g} mm"')
 
 
 def _forces(inputs: Mapping[str, Any], units: UnitSystem) -> Iterator[Slip]:
     """Forces, numbers and tables, that no rod of this length could carry."""
-    length = inputs.get("BC", 0.0)
-    if isinstance(length, tuple) or getattr(length, "ndim", 0) == 1:
-        length = max((one for one in length if isinstance(one, (int, float))), default=0.0)
-    if not isinstance(length, (int, float)) or not SHORTEST < length <= FARTHEST:
-        return
-    for name in FORCES:
+    rods: Any = inputs.get("BC")
+    length = max(_numbers(rods.tolist() if hasattr(rods, "tolist") else rods), default=0.0)
+    for name in FORCES if SHORTEST < length <= FARTHEST else ():
         value = inputs.get(name)
         size = abs(value) if isinstance(value, (int, float)) else getattr(value, "largest", 0.0)
         stress = 4.0 * size / length**2
@@ -131,29 +128,18 @@ def _forces(inputs: Mapping[str, Any], units: UnitSystem) -> Iterator[Slip]:
             )
 
 
-def _alone(written: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Each value with its input; of one with a tolerance the value, of a range both ends."""
-    for name, value in written.items():
-        if isinstance(value, PlusMinus):
-            yield name, value.value
-        elif isinstance(value, Between):
-            yield from ((name, end) for end in value)
-        else:
-            yield name, value
-
-
-def _slip(name: str, value: Any, units: UnitSystem, inputs: Mapping[str, Any]) -> Slip | None:
-    """The slip of a number, or of a text without a unit."""
-    kind = KINDS.get(name)
-    value = plain_number(value) if isinstance(value, str) else value
-    conversion = units.of(name) if kind else None
-    if kind is None or conversion is None or type(value) not in (int, float) or not _is_typed(value):
+def _slip(name: str, value: float, units: UnitSystem, inputs: Mapping[str, Any]) -> Slip | None:
+    """The slip of a number."""
+    base = name.partition("[")[0]
+    kind = KINDS.get(base)
+    if kind is None:
         return None
+    conversion = units.of(name)
     si = abs(conversion.to_si(float(value)))
     wrong = kind.most < si <= kind.beyond
     if kind is TURNS:
         wrong = wrong and conversion.unit == "rad" and _is_in_degrees(si) and not inputs.get("alpha")
-    in_si = conversion.si != 1 and ((name in LINKS and si < SHORTEST) or (kind is GRAVITY and si < WEAKEST))
+    in_si = conversion.si != 1 and ((base in LINKS and si < SHORTEST) or (kind is GRAVITY and si < WEAKEST))
     if not wrong and not in_si:
         return None
     remedy = '"{number:.6g} m"' if in_si and kind is SIZE else kind.remedy

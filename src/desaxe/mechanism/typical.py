@@ -31,9 +31,9 @@ _BY_UNIT = {kind.unit: kind for kind in (TURNS, SIZE, SPEED, MASS, GRAVITY)}
 SHARE, MOST_PERCENT = Typical(3.0, inf, '"{number:.6g} %"'), 100.0
 KINDS = {
     **{name: _BY_UNIT[row.unit] for name, row in INPUTS.items() if row.unit in _BY_UNIT},
-    **dict.fromkeys(("theta0", "until"), TURNS),
+    **dict.fromkeys(("theta0", "until", "phase", "bank", "firing"), TURNS),
     **dict.fromkeys(("omega_start", "synchronous_speed"), SPEED),
-    "free": SIZE,
+    **dict.fromkeys(("free", "spacing", "position"), SIZE),
     "mu": Typical(10.0, 100.0, "{hundredth:.6g}"),
     "breakdown_slip": SHARE,
 }
