@@ -2,8 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from keyword import iskeyword
-from math import pi
-from typing import Any, NamedTuple
+from typing import Any
 
 from ..compiler.passes.pipeline import optimise
 from ..compiler.program import RESERVED, Line, Note, Program
@@ -11,23 +10,21 @@ from ..compiler.text import write_function
 from ..mechanism.inputs import INPUTS, Input
 from ..mechanism.names import INTERNAL, parts
 from ..mechanism.own import Definition, change, closure, derived_names, register, rows_of
-from ..mechanism.read import number_of
+from ..mechanism.read import read
 from ..mechanism.spelling import did_you_mean
 from ..support.shown import shown
-from ..units.dimensions import Unit
+from ..units.dimensions import NONE, unit_text
 from ..units.parse import coherent_unit, exact_quantity, rounded
-from .dimension import NONE, dimension_of
+from ..units.table import PI
 from .expression import FUNCTIONS, ExpressionText, Token, parse
-from .lowering import Lowering, Value
+from .lowering import Lowering, Value, dimension_of, dimension_text
 
 LONGEST_NAME = 48
 LONGEST_CONSTANT = 100
-LONGEST_MEANING = 200
-# Inputs of calls, and measures of designs, which are named in the same places as quantities.
+LONGEST_MEANING, LONGEST_UNIT = 200, 40
+# Inputs of calls, and results, which are named in the same places as quantities.
 TAKEN = frozenset((
-    "branch", "accuracy", "threads", "out", "quality", "kind", "reduce", "torque", "stroke", "time_ratio",
-    "slow_stroke", "advance_angle", "return_angle", "theta_outer", "theta_inner", "Y_outer", "Y_inner",
-    "point",
+    "branch", "accuracy", "threads", "out", "quality", "kind", "reduce", "torque", "slow_stroke", "point",
 ))  # fmt: skip
 # What ends a comment or a text in one of the languages that a meaning is written into.
 MARKS = ('"""', "\\", " | ", "*/", "</", "<!--", "-->")
@@ -59,34 +56,24 @@ def define(name: str, expression: str, unit: str | None = None, meaning: str = "
     the first. Returns the name. Raises ValueError or TypeError that points at the place for a name that is
     taken, an unknown name, a dimension that does not fit, or anything that is no expression.
     """
-    entry = DefinitionInputs(name, expression, unit, meaning, constants)
-    change(lambda known: with_definitions(known, [compiled(entry, known)]))
+    made = (name, expression, unit, meaning, constants)
+    change(lambda known: with_definitions(known, [compiled(*made, known)]))
     return name
 
 
 def undefine(name: str) -> None:
     """Remove a user-defined quantity; ValueError if there is none of this name or another one uses it."""
-    change(lambda known: _without(name, known))
 
+    def without(known: Mapping[str, Definition]) -> dict[str, Definition]:
+        if not isinstance(name, str) or name not in known:
+            others = f"; there are {', '.join(known)}" if known else ""
+            raise ValueError(f"name = {shown(name)} is not a defined quantity{others}")
+        users = [other.name for other in known.values() if name in _bases(other)]
+        if users:
+            raise ValueError(f"{name} is used by {', '.join(users)}: undefine that first")
+        return {key: definition for key, definition in known.items() if key != name}
 
-def _without(name: str, known: Mapping[str, Definition]) -> dict[str, Definition]:
-    if not isinstance(name, str) or name not in known:
-        others = f"; there are {', '.join(known)}" if known else ""
-        raise ValueError(f"name = {shown(name)} is not a defined quantity{others}")
-    users = [other.name for other in known.values() if name in _bases(other)]
-    if users:
-        raise ValueError(f"{name} is used by {', '.join(users)}: undefine that first")
-    return {key: definition for key, definition in known.items() if key != name}
-
-
-class DefinitionInputs(NamedTuple):
-    """The arguments of one definition, unchecked."""
-
-    name: str
-    expression: str
-    unit: str | None
-    meaning: str
-    constants: Mapping[str, Any]
+    change(without)
 
 
 def with_definitions(known: Mapping[str, Definition], new: Iterable[Definition]) -> dict[str, Definition]:
@@ -98,8 +85,7 @@ def with_definitions(known: Mapping[str, Definition], new: Iterable[Definition])
     replaced = {definition.name for definition in new if definition.name in known}
     for other in known.values():
         if other.name not in replaced and replaced.intersection(_bases(other)):
-            entry = DefinitionInputs(*other[:4], dict(other.constants))
-            result[other.name] = compiled(entry, result)
+            result[other.name] = compiled(*other[:4], dict(other.constants), result)
     return result
 
 
@@ -119,35 +105,36 @@ def _bases(definition: Definition) -> list[str]:
     return [parts(used)[0] for used in definition.uses]
 
 
-# ---- checks ---------------------------------------------------------------------------------------
-
-
-def compiled(entry: DefinitionInputs, known: Mapping[str, Definition]) -> Definition:
-    """Check a definition and compile its expression."""
-    name = entry.name
+def compiled(
+    name: Any,
+    expression: Any,
+    unit: Any,
+    meaning: Any,
+    constants: Mapping[str, Any],
+    known: Mapping[str, Definition],
+) -> Definition:
+    """Check a definition and compile its expression; its arguments are those of `define`."""
     _check_name(name)
-    meaning = _checked_text(name, "meaning", entry.meaning, LONGEST_MEANING)
-    if not isinstance(entry.expression, str):
-        raise TypeError(f"{name}: the expression is a text, got {type(entry.expression).__name__}")
-    source = ExpressionText(name, entry.expression)
+    meaning = _checked_text(name, "meaning", meaning, LONGEST_MEANING)
+    if not isinstance(expression, str):
+        raise TypeError(f"{name}: the expression is a text, got {type(expression).__name__}")
+    source = ExpressionText(name, expression)
     tree, words = parse(source)
-    constants = {
-        constant: str(value) if hasattr(value, "magnitude") else value
-        for constant, value in entry.constants.items()
-    }
-    values = {constant: _constant(name, constant, value) for constant, value in constants.items()}
-    uses = _uses(source, [word for word in words if word[0] not in values and word[0] != "pi"], known, values)
-    lowering = Lowering(source, {**values, **uses, "pi": Value(pi, NONE)})
+    expression = " ".join(expression.split())
+    constants = {key: str(v) if hasattr(v, "magnitude") else v for key, v in constants.items()}
+    values = {key: _constant(name, key, value) for key, value in constants.items()}
+    unused = [key for key in values if key not in {word[0] for word in words}]
+    values["pi"] = Value(float(PI), NONE)
+    uses = _uses(source, [word for word in words if word[0] not in values], known, constants)
+    lowering = Lowering(source, {**values, **uses})
     value = lowering.value(tree)
-    unit = _unit(source, entry.unit, value)
-    expression = " ".join(entry.expression.split())
-    unused = [constant for constant in values if constant not in {word[0] for word in words}]
+    unit = _unit(source, unit, value)
     if unused:
         raise ValueError(f"{name}: constant {unused[0]} is not used in {expression!r}")
     lines = (*lowering.lines, Line(OUTPUT, "copy", (value.argument,)))
     program = optimise(Program(tuple(uses), lines, (OUTPUT,), {OUTPUT: Note(unit, meaning, expression)}))
     text = write_function(program, "own", f"{name}, in SI units and radians.")
-    stored = tuple((n, value if isinstance(value, str) else float(value)) for n, value in constants.items())
+    stored = tuple((key, v if isinstance(v, str) else float(v)) for key, v in constants.items())
     return Definition(name, expression, unit, meaning, stored, text)
 
 
@@ -177,34 +164,19 @@ def _checked_text(name: str, what: str, text: Any, longest: int) -> str:
 
 
 def _constant(owner: str, name: str, value: Any) -> Value:
+    """A constant, a number or a text such as "1 mm", in its SI unit."""
     if not (name.isascii() and name.isidentifier()) or len(name) > LONGEST_NAME:
         raise ValueError(f"{owner}: {name[:LONGEST_NAME]!r} is not a valid name of a constant")
-    if (
-        name in FUNCTIONS
-        or name == "pi"
-        or name in derived_names()
-        or name in INPUTS
-        or name in register().rows
-    ):
+    if any(name in taken for taken in (FUNCTIONS, ("pi",), derived_names(), INPUTS, register().rows)):
         raise ValueError(f"{owner}: constant {name!r} has the name of a quantity, an input or a function")
-    try:
-        number, unit = _number_and_unit(f"constant {name}", value)
-    except (ValueError, TypeError) as error:
-        raise type(error)(f"{owner}: {error}") from None
-    return Value(number, dimension_of(unit))
-
-
-def _number_and_unit(what: str, value: Any) -> tuple[float, Unit]:
-    """A constant, a number or a text such as "1 mm", in the SI unit that is returned with it."""
+    what = f"{owner}: constant {name}"
     if not isinstance(value, str):
-        number = number_of(Input(what, "1", "", limit="finite"), value)
-        if number is None:
-            raise TypeError(f"{what} = {shown(value)}: expected a number or a text such as '1 mm'")
-        return number, Unit()
+        row = Input(what, "1", "", limit="finite")
+        return Value(read(row, value, "define", "a number or a text such as '1 mm'"), NONE)
     if len(value) > LONGEST_CONSTANT:
         raise ValueError(f"{what}: {len(value)} characters are no number with a unit")
     exact, unit = exact_quantity(f"{what} = {value!r}", value)
-    return rounded(what, value, exact), unit
+    return Value(rounded(what, value, exact), dimension_of(unit))
 
 
 def _uses(
@@ -218,38 +190,31 @@ def _uses(
             source.refuse(*word.span(), f"{base} would be defined by itself")
         if base == "status":
             source.refuse(*word.span(), "status is not a real number")
-        unit = _unit_of_name(name, known)
-        if unit is None:
+        row = (rows_of(known[base], known) if base in known else derived_names()).get(name)
+        if row is None and name not in INPUTS:
             everything = (*derived_names(), *INPUTS, *known, *constants)
             hint = did_you_mean(name, everything).strip() if len(name) <= LONGEST_NAME else ""
             source.refuse(*word.span(), f"unknown name {shown(name)}{'; ' * bool(hint)}{hint}")
-        uses[name] = Value(name, dimension_of(coherent_unit(unit)))
+        uses[name] = Value(name, dimension_of(coherent_unit(row[0] if row else INPUTS[name].unit)))
     if not uses:
         source.refuse_all("a constant: it uses no quantity and no input")
     return uses
 
 
-def _unit_of_name(name: str, known: Mapping[str, Definition]) -> str | None:
-    """The unit of a quantity, sensitivity or input; None for an unknown name."""
-    base = parts(name)[0]
-    rows = rows_of(known[base], known) if base in known else derived_names()
-    row = rows.get(name)
-    return row[0] if row else INPUTS[name].unit if name in INPUTS else None
-
-
-def _unit(source: ExpressionText, unit: str | None, value: Value) -> str:
+def _unit(source: ExpressionText, unit: Any, value: Value) -> str:
     """The unit, checked against the dimension of the expression."""
     dimension = value.dimension or NONE
     if unit is None:
-        derived = dimension.unit()
-        if derived is None:
-            source.refuse_all(f"its dimension, {dimension}, has no unit: a power of it is not an integer")
-        return derived
-    text = _checked_text(source.name, "unit", unit, 40)
+        if any(power.denominator != 1 for power in dimension[:4]):
+            text = dimension_text(dimension)
+            source.refuse_all(f"its dimension, {text}, has no unit: a power of it is not an integer")
+        return unit_text(NONE) if dimension == NONE else dimension_text(dimension)
+    text = _checked_text(source.name, "unit", unit, LONGEST_UNIT)
     try:
         requested = dimension_of(coherent_unit(text))
     except ValueError as error:
         raise ValueError(f"{source.name}: {error}") from None
     if requested != dimension:
-        source.refuse_all(f"the unit {text!r} is {requested}, but the expression is {dimension}")
+        wrong, right = dimension_text(requested), dimension_text(dimension)
+        source.refuse_all(f"the unit {text!r} is {wrong}, but the expression is {right}")
     return text

@@ -29,15 +29,10 @@ _TOKEN = re.compile(
     re.ASCII | re.DOTALL,
 )
 _HINTS = {
-    ".": ": there are no attributes",
-    "^": "; a power is **",
-    "=": "; equality is ==",
-    "&": "; use where(...) within where(...)",
-    "|": "; use where(...) within where(...)",
-    "%": "; there is no remainder",
-    "[": "; there are no lists",
-    "'": "; there is no text",
-    '"': "; there is no text",
+    **{".": ": there are no attributes", "^": "; a power is **", "=": "; equality is =="},
+    **{"%": "; there is no remainder", "[": "; there are no lists"},
+    **dict.fromkeys("&|", "; use where(...) within where(...)"),
+    **dict.fromkeys("'\"", "; there is no text"),
 }
 _WINDOW = 72  # characters of a long text that a message shows
 Token = re.Match[str]

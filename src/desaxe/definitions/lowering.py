@@ -7,13 +7,13 @@ sides of their comparison.
 
 import ast
 import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from math import isfinite, nan
 from typing import Any, NamedTuple
 
 from ..compiler.program import Argument, Line
-from .dimension import NONE, Dimension
+from ..units.dimensions import NONE, POWER, Unit, unit_text
 from .expression import FUNCTIONS, ExpressionText
 
 LARGEST_POWER = 64
@@ -36,7 +36,19 @@ class Value(NamedTuple):
     """A part of an expression: a constant or the name of a line or input; None as the dimension of a 0."""
 
     argument: Argument
-    dimension: Dimension | None
+    dimension: Unit | None
+
+
+def dimension_of(unit: Unit) -> Unit:
+    """The dimension of a unit; an angle has none."""
+    return unit._replace(rad=0, name="")
+
+
+def dimension_text(dimension: Unit | None) -> str:
+    """A dimension as its SI unit, or in words."""
+    if dimension in (None, NONE):
+        return "a plain number"
+    return "W" if dimension == dimension_of(POWER) else unit_text(dimension or NONE)
 
 
 class Lowering:
@@ -50,7 +62,10 @@ class Lowering:
         """The value of a part; ValueError that marks what has no meaning."""
         match node:
             case ast.Constant():
-                return self._number(node)
+                number = float(self.source.atom(node))
+                if not isfinite(number):
+                    self.source.refuse_node(node, "the number is too large")
+                return Value(number, NONE if number else None)
             case ast.Name():
                 return self.names[self.source.atom(node)]
             case ast.UnaryOp():
@@ -59,12 +74,10 @@ class Lowering:
                 return self._power(node)
             case ast.BinOp():
                 return self._arithmetic(node)
-            case ast.Call(func, arguments):
-                return self._call(node, self.source.atom(func), arguments)
-            case ast.Compare(ops=[_]):
-                self.source.refuse_node(node, ONLY_IN_WHERE)
+            case ast.Call(func, parts):
+                return self._call(node, self.source.atom(func), parts)
             case ast.Compare():
-                self.source.refuse_node(node, TWO_SIDES)
+                self.source.refuse_node(node, TWO_SIDES if len(node.ops) > 1 else ONLY_IN_WHERE)
         raise AssertionError(ast.dump(node))
 
     def _line(self, op: str, *args: Argument, type: str = "f64") -> Argument:
@@ -79,12 +92,6 @@ class Lowering:
         self.lines.append(Line(f"_{len(self.lines)}", op, args, type))
         return self.lines[-1].name
 
-    def _number(self, node: ast.Constant) -> Value:
-        number = float(self.source.atom(node))
-        if not isfinite(number):
-            self.source.refuse_node(node, "the number is too large")
-        return Value(number, NONE if number else None)
-
     def _signed(self, node: ast.expr) -> Value:
         """A part with any count of signs before it."""
         minus = False
@@ -96,45 +103,40 @@ class Lowering:
 
     def _arithmetic(self, node: ast.BinOp) -> Value:
         op, sign = _SIGNS[type(node.op)]
-        parts = [node.left, node.right]
-        (a, of_a), (b, of_b) = values = [self.value(part) for part in parts]
+        parts = {node.left: self.value(node.left), node.right: self.value(node.right)}
+        (a, of_a), (b, of_b) = parts.values()
         if op in ("mul", "div"):
-            product = (of_a or NONE).times(of_b or NONE, 1 if op == "mul" else -1)
-            return Value(self._line(op, a, b), product)
-        return Value(self._line(op, a, b), self._common(node, sign, parts, values))
+            dimension: Unit | None = (of_a or NONE).times(of_b or NONE, 1 if op == "mul" else -1)
+        else:
+            dimension = self._common(node, sign, parts)
+        return Value(self._line(op, a, b), dimension)
 
-    def _common(
-        self, node: ast.expr, sign: str, parts: Sequence[ast.expr], values: Sequence[Value]
-    ) -> Dimension | None:
+    def _common(self, node: ast.expr, sign: str, parts: Mapping[ast.expr, Value]) -> Unit | None:
         """The common dimension of the parts; ValueError that shows two that differ."""
-        known = [
-            (part, dimension)
-            for part, (_, dimension) in zip(parts, values, strict=True)
-            if dimension is not None
-        ]
-        for part, dimension in known:
-            if dimension != known[0][1]:
-                one, other = self._said(*known[0]), self._said(part, dimension)
-                problem = f"{sign!r} wants one dimension on both sides: {one}, {other}"
-                self.source.refuse_node(node, problem)
-        return known[0][1] if known else None
+        known = [part for part, value in parts.items() if value.dimension is not None]
+        for part in known:
+            if parts[part].dimension != parts[known[0]].dimension:
+                one, other = (self._described(each, parts[each]) for each in (known[0], part))
+                self.source.refuse_node(node, f"{sign!r} wants one dimension on both sides: {one}, {other}")
+        return parts[known[0]].dimension if known else None
 
-    def _said(self, node: ast.expr, dimension: Dimension | None) -> str:
-        return f"{self.source.quote(node)!r} is {dimension}"
+    def _described(self, node: ast.expr, value: Value) -> str:
+        return f"{self.source.quote(node)!r} is {dimension_text(value.dimension)}"
+
+    def _require_plain(self, marked: ast.expr, node: ast.expr, value: Value, limit: str) -> None:
+        """ValueError for a part that has a dimension."""
+        if value.dimension not in (None, NONE):
+            self.source.refuse_node(marked, f"{limit} {self._described(node, value)}")
 
     # ---- powers -------------------------------------------------------------------------------------
 
     def _power(self, node: ast.BinOp) -> Value:
         base, exponent = self.value(node.left), self.value(node.right)
         power = exponent.argument
-        if exponent.dimension not in (None, NONE):
-            said = self._said(node.right, exponent.dimension)
-            self.source.refuse_node(node.right, f"a power is a plain number, {said}")
+        self._require_plain(node.right, node.right, exponent, "a power is a plain number,")
         if not isinstance(power, float):
-            if base.dimension not in (None, NONE):
-                said = self._said(node.left, base.dimension)
-                problem = f"the power of what has a dimension is a constant; {said}"
-                self.source.refuse_node(node.right, problem)
+            limit = "the power of what has a dimension is a constant;"
+            self._require_plain(node.right, node.left, base, limit)
             return Value(self._line("pow", base.argument, power), NONE)
         if not abs(power) <= LARGEST_POWER:
             problem = f"a power of {power:g}: at most {LARGEST_POWER} is possible"
@@ -144,28 +146,26 @@ class Lowering:
         return Value(self._to_constant_power(base.argument, power), dimension)
 
     def _to_constant_power(self, base: Argument, power: float) -> Argument:
+        """Whole and half powers by repeated squaring."""
         whole, half = divmod(abs(power), 1.0)
         if isinstance(base, float) or half not in (0.0, 0.5):
             return self._line("pow", base, power)
-        result = self._whole_power(base, int(whole))
+        square: Argument = base
+        result: Argument = 1.0
+        count = int(whole)
+        while count:
+            if count & 1:
+                result = square if result == 1.0 else self._line("mul", result, square)
+            count >>= 1
+            square = self._line("mul", square, square) if count else square
         if half:
             root = self._line("sqrt", base)
             result = self._line("mul", result, root) if whole else root
         return self._line("div", 1.0, result) if power < 0 else result
 
-    def _whole_power(self, base: Argument, count: int) -> Argument:
-        """base to an integer power, by repeated squaring."""
-        result: Argument = 1.0
-        while count:
-            if count & 1:
-                result = base if result == 1.0 else self._line("mul", result, base)
-            count >>= 1
-            base = self._line("mul", base, base) if count else base
-        return result
-
     # ---- calls --------------------------------------------------------------------------------------
 
-    def _call(self, node: ast.expr, name: str, parts: Sequence[ast.expr]) -> Value:
+    def _call(self, node: ast.expr, name: str, parts: list[ast.expr]) -> Value:
         least, most = FUNCTIONS[name]
         if not least <= len(parts) <= most:
             counts = f"{least}" if least == most else f"{least} to {most}"
@@ -173,17 +173,17 @@ class Lowering:
             self.source.refuse_node(node, problem)
         if name == "where":
             return self._where(node, *parts)
-        values = [self.value(part) for part in parts]
-        arguments = [value.argument for value in values]
-        dimension = values[0].dimension
-        if name in _OF_NUMBERS and dimension not in (None, NONE):
-            problem = f"{name} wants a plain number, {self._said(parts[0], dimension)}"
-            self.source.refuse_node(node, problem)
-        if name == "sqrt":
+        values = {part: self.value(part) for part in parts}
+        first = values[parts[0]]
+        dimension = first.dimension
+        if name in _OF_NUMBERS:
+            self._require_plain(node, parts[0], first, f"{name} wants a plain number,")
+        elif name == "sqrt":
             dimension = dimension and NONE.times(dimension, Fraction(1, 2))
         elif len(parts) > 1:
-            dimension = self._common(node, name, parts, values)
+            dimension = self._common(node, name, values)
         plain = name in _OF_NUMBERS or name == "atan2"
+        arguments = [value.argument for value in values.values()]
         return Value(self._function(name, arguments), NONE if plain else dimension)
 
     def _function(self, name: str, arguments: list[Argument]) -> Argument:
@@ -193,8 +193,7 @@ class Lowering:
             return self._line(name, *arguments)
         result, *others = arguments
         for other in others:
-            pair = (result, other) if name == "min" else (other, result)
-            first = self._line("le", *pair, type="bool")
+            first = self._line("le", *((result, other) if name == "min" else (other, result)), type="bool")
             rest = self._line("select", self._exists(result), other, nan)
             result = self._line("select", first, result, rest)
         return result
@@ -206,12 +205,14 @@ class Lowering:
         if len(test.ops) > 1:
             self.source.refuse_node(test, TWO_SIDES)
         op, sign = _COMPARISONS[type(test.ops[0])]
-        sides = [test.left, *test.comparators]
-        compared, values = [self.value(side) for side in sides], [self.value(yes), self.value(no)]
-        self._common(test, sign, sides, compared)
-        dimension = self._common(node, "where", [yes, no], values)
-        (a, _), (b, _) = reversed(compared) if sign in (">", ">=") else compared
-        (first, _), (second, _) = reversed(values) if sign == "!=" else values
+        compared = {side: self.value(side) for side in (test.left, *test.comparators)}
+        values = {side: self.value(side) for side in (yes, no)}
+        self._common(test, sign, compared)
+        dimension = self._common(node, "where", values)
+        a, b = (value.argument for value in compared.values())
+        first, second = (value.argument for value in values.values())
+        a, b = (b, a) if sign in (">", ">=") else (a, b)
+        first, second = (second, first) if sign == "!=" else (first, second)
         holds = self._line(op, a, b, type="bool")
         both = self._line("and", self._exists(a), self._exists(b), type="bool")
         rest = self._line("select", both, second, nan)

@@ -13,21 +13,22 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ..mechanism.own import Definition, change, register, used_by
-from .define import DefinitionInputs, compiled, with_definitions
+from .define import compiled, with_definitions
 
+Arguments = tuple[str, str, Any, Any, dict[str, Any]]
 KEYS = ("expression", "unit", "meaning", "constants")
 
 
 def read_definitions(tables: Mapping[str, Any]) -> tuple[Definition, ...]:
     """Read the definitions of `[quantities]`, in any order; ValueError names the wrong one."""
-    waiting = {name: _entry(name, table) for name, table in tables.items()}
+    waiting = {name: _arguments(name, table) for name, table in tables.items()}
     known = {name: old for name, old in register().definitions.items() if name not in waiting}
     made: dict[str, Definition] = {}
     while waiting:
         # The definitions that use no other pending one; a circle leaves none, and the first reports it.
-        ready = [n for n, entry in waiting.items() if not _mentions(entry.expression, waiting, n)]
+        ready = [n for n, entry in waiting.items() if not _mentions(entry[1], waiting, n)]
         for name in ready or [next(iter(waiting))]:
-            made[name] = compiled(waiting.pop(name), {**known, **made})
+            made[name] = compiled(*waiting.pop(name), {**known, **made})
     return tuple(made.values())
 
 
@@ -37,7 +38,8 @@ def _mentions(expression: str, names: Mapping[str, Any], own: str) -> bool:
     return any(name in words for name in names if name != own)
 
 
-def _entry(name: str, table: Any) -> DefinitionInputs:
+def _arguments(name: str, table: Any) -> Arguments:
+    """The arguments of a definition."""
     if not isinstance(table, Mapping):
         raise ValueError(f"quantities.{name} = {table!r}: expected a table with an expression")
     wrong = [key for key in table if key not in KEYS]
@@ -50,7 +52,7 @@ def _entry(name: str, table: Any) -> DefinitionInputs:
         raise ValueError(
             f"quantities.{name}.constants = {constants!r}: expected a table such as {{f = 0.08}}"
         )
-    return DefinitionInputs(name, expression, table.get("unit"), table.get("meaning", ""), dict(constants))
+    return name, expression, table.get("unit"), table.get("meaning", ""), dict(constants)
 
 
 def tables_of(made: Iterable[Definition]) -> dict[str, dict[str, Any]]:

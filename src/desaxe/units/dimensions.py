@@ -1,23 +1,22 @@
 """Units as exponents of m, s, rad and kg."""
 
+from collections.abc import Mapping
+from fractions import Fraction
 from typing import NamedTuple
+
+Power = int | Fraction
 
 
 class Unit(NamedTuple):
     """A coherent SI unit as exponents: `Unit(1, -2)` is m/s^2; `name` is its special name, such as W."""
 
-    m: int = 0
-    s: int = 0
-    rad: int = 0
-    kg: int = 0
+    m: Power = 0
+    s: Power = 0
+    rad: Power = 0
+    kg: Power = 0
     name: str = ""
 
-    @property
-    def exponents(self) -> dict[str, int]:
-        """The exponents that are not 0, by base unit."""
-        return {base: power for base, power in self._asdict().items() if base != "name" and power}
-
-    def times(self, other: "Unit", power: int = 1) -> "Unit":
+    def times(self, other: "Unit", power: Power = 1) -> "Unit":
         """The product with a power of another unit."""
         m, s, rad, kg = (a + power * b for a, b in zip(self[:4], other[:4], strict=True))
         return Unit(m, s, rad, kg)
@@ -39,18 +38,19 @@ PRESSURE = Unit(-1, -2, kg=1, name="Pa")
 
 def unit_text(unit: Unit) -> str:
     """A unit as text for pint and UDUNITS: `m/s^2/rad`, `N*m`, `1`."""
-    powers = {"N": 0, "kg": 0, "m": 0, "s": 0, "rad": 0, **unit.exponents}
+    powers: dict[str, Power] = {"N": 0, "kg": unit.kg, "m": unit.m, "s": unit.s, "rad": unit.rad}
     if powers["kg"] == 1 and powers["s"] <= -2:  # a force is in it
         powers.update(N=1, kg=0, m=powers["m"] - 1, s=powers["s"] + 2)
     return unit.name or product(powers)
 
 
-def product(powers: dict[str, int]) -> str:
+def product(powers: Mapping[str, Power]) -> str:
     """The text of powers of names: `N*m/rad`, `1/s^2`."""
     above = [_power(name, power) for name, power in powers.items() if power > 0]
     below = [_power(name, -power) for name, power in powers.items() if power < 0]
     return "/".join(["*".join(above) or "1", *below])
 
 
-def _power(name: str, power: int) -> str:
-    return name if power == 1 else f"{name}^{power}"
+def _power(name: str, power: Power) -> str:
+    exponent = f"{power}" if power.denominator == 1 else f"({power})"
+    return name if power == 1 else f"{name}^{exponent}"

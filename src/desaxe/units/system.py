@@ -1,7 +1,7 @@
 """The units of plain numbers: "mm, deg, rpm, kN", one for each dimension."""
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -115,7 +115,7 @@ def _key(name: Any, si_unit: Callable[[str], str]) -> str:
 
 def _dimension_of(unit: str) -> str:
     """The dimension of a unit; N m is a torque, J an energy."""
-    meant = _meant(unit, DIMENSIONS.values())
+    meant = "".join(dict.fromkeys(did_you_mean_unit(unit, si) for si in DIMENSIONS.values()))
     try:
         si = parse_unit(unit).si if not meant or is_in_table(unit) else None
     except ValueError:
@@ -130,8 +130,3 @@ def _dimension_of(unit: str) -> str:
         raise ValueError(f"units: {shown(unit)} is none of {', '.join(DIMENSIONS)}{apart}")
     product = re.search(r"[^\W\d_][ *.·][^\W\d_]", unit) is not None
     return fitting[-1] if len(fitting) > 1 and not product else fitting[0]
-
-
-def _meant(unit: str, dimensions: Iterable[str]) -> str:
-    """The question for the unit of these dimensions, by their SI units, whose letters it has; else empty."""
-    return "".join(dict.fromkeys(did_you_mean_unit(unit, si) for si in dimensions))

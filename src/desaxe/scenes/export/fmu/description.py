@@ -26,7 +26,7 @@ def description(name: str, head: dict[str, str], table: Variables, made: Program
         ElementTree.SubElement(files, "File", name=f"{name}.c")
     group = ElementTree.SubElement(root, "UnitDefinitions")
     for unit in dict.fromkeys(row.unit for row in table.rows if row.unit != "1"):
-        powers = {base: str(power) for base, power in coherent_unit(unit).exponents.items()}
+        powers = {base: str(n) for base, n in coherent_unit(unit)._asdict().items() if n and base != "name"}
         ElementTree.SubElement(ElementTree.SubElement(group, "Unit", name=unit), "BaseUnit", powers)
     group = ElementTree.SubElement(root, "LogCategories")
     for category, meaning in (("logStatusError", "what is wrong"), ("logEvents", "why a simulation ends")):
