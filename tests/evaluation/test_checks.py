@@ -69,18 +69,22 @@ BAD = {"theta": math.inf, "ec": math.nan, "AB": -1e-9, "BC": 0.0, "omega0": math
 def all_columns(**changed):
     theta, ec = columns(4)
     given = {"theta": theta, "ec": ec, "alpha": 0.0, **SIZES} | changed
-    return {name: np.broadcast_to(value, 4).astype(float) for name, value in given.items()}
+    return {name: np.broadcast_to(given[name], 4).astype(float) for name in INPUTS}
 
 
-@pytest.mark.parametrize("name", INPUTS)
-def test_a_bad_element_disturbs_no_other(name):
+@pytest.mark.parametrize(
+    ("name", "value"), [*BAD.items(), *dict.fromkeys(INPUTS[1:], 1e61).items(), ("BC", 1e-61)]
+)
+def test_a_bad_element_disturbs_no_other(name, value):
     good = all_columns()
     bad = good[name].copy()
-    bad[2] = BAD[name]
+    bad[2] = value
     before, after = dx.evaluate(ASKED, **good), dx.evaluate(ASKED, **good | {name: bad})
     assert all(np.array_equal(np.delete(before[q], 2), np.delete(after[q], 2)) for q in ASKED)
     assert np.isnan(after["V_C"][2])
     assert after["status"][2] == 4
+    prepared = dx.function(ASKED, INPUTS)(*(good | {name: bad}).values())
+    assert all(np.array_equal(new, after[q], equal_nan=True) for q, new in zip(ASKED, prepared, strict=True))
 
 
 def test_a_bad_speed_is_nan_itself():

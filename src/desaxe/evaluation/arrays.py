@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiler.passes.guard import BAD_INPUT
 from ..mechanism.inputs import INPUTS, SAFE, Input, is_good, limit_of
 from ..mechanism.messages import amount, named
 from ..mechanism.read import read_array
-from ..runtime.kernels import KernelKey, key_of, tells_unsafe
+from ..runtime.kernels import KernelKey, key_of
 from ..runtime.point import point_of
 from ..runtime.request import Request, as_number
 from ..runtime.threads import run_in_blocks
@@ -243,29 +242,14 @@ def fill(
     """
     sizes, columns, axis_of = loops
     outs = [out.reshape(sizes) for out in outs]
-    chosen = key is not None
     if key is None:
         key = key_of(wanted, scalars, columns, axis_of, len(sizes), keys)
     if columns:
-        left = run_in_blocks(key, {**scalars, **columns}, outs, threads)
-        if (len(columns) > 1 or "theta" not in columns) and (chosen or left or not tells_unsafe(key)):
-            _refuse_beyond(columns, axis_of, sizes, outs)
+        run_in_blocks(key, {**scalars, **columns}, outs, threads)
         return
     point = point_of(key.names, key.form, key.fixed, key.accuracy)
     for out, value in zip(outs, point.run(scalars), strict=True):
         out[...] = value
-
-
-def _refuse_beyond(
-    columns: Mapping[str, Array], axis_of: Mapping[str, int], sizes: Sequence[int], outs: Sequence[Array]
-) -> None:
-    """Bad inputs are those beyond their range, too."""
-    masks = [(are_beyond(n, column), axis_of[n]) for n, column in columns.items() if n != "theta"]
-    beyond = [spread(mask, axis, sizes) for mask, axis in masks if mask.any()]
-    if beyond:
-        points = np.flatnonzero(np.logical_or.reduce(beyond))
-        for out in outs:
-            out.reshape(-1)[points] = BAD_INPUT if out.dtype == STATUS else np.nan
 
 
 # ---- loops: a column of designs over a row of angles needs the sine of an angle once, not once a design ----
@@ -312,9 +296,3 @@ def _inputs(along: Mapping[str, set[int]], axis: int) -> set[str]:
 
 def _column(array: Array, shape: Sequence[int]) -> Array:
     return np.ascontiguousarray(np.broadcast_to(array, shape)).reshape(-1)
-
-
-def spread(column: Array, axis: int, shape: Sequence[int]) -> Array:
-    """The values along one axis, repeated for each point of a shape, in its order: a contiguous copy."""
-    own = [-1 if k == axis else 1 for k in range(len(shape))]
-    return np.broadcast_to(column.reshape(own), shape).flatten()

@@ -1,14 +1,15 @@
 """From a request to the loop nest that answers it: keys and their kernels."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from itertools import product
-from math import inf, nan, prod
+from math import nan, prod
 from typing import Any, NamedTuple
 
 from ..compiler.kernel import Kernel
 from ..compiler.languages.python import compile_python
 from ..compiler.lowering import Limits, guarded_for_loops, guarded_pairs, nest, nest_of_two_forms
+from ..compiler.passes.guard import guard_inputs
 from ..compiler.passes.trigonometry import Trigonometry
 from ..compiler.program import Line, Program
 from ..mechanism.constants import constants, double_constants
@@ -108,15 +109,6 @@ def has_near_limit(key: KernelKey) -> bool:
     return key.accuracy == "standard" and plain_of(key) is not None
 
 
-def tells_unsafe(key: KernelKey) -> bool:
-    """True if the kernel counts the points with an input that is not SAFE.
-
-    So the columns need not be read for that ahead, which takes as long as many a kernel.
-    """
-    varies = key.axes == 1 and any(name in LENGTHS for name, _ in key.axis_of)
-    return varies and not key.far and not key.form.wide_margins and has_near_limit(key)
-
-
 def plain_of(key: KernelKey) -> Program | None:
     """The plain form of a key's program, where it has two."""
     return plain_form(key.names, key.form, key.fixed) if key.accuracy != "extended" else None
@@ -138,19 +130,17 @@ def _loops_of(key: KernelKey) -> Kernel:
     axes = dict(key.axis_of)
     varying = [name for name in program.inputs if name in axes]
     if key.accuracy == "extended":
-        limits = Limits(LEAST, {"theta": double_constants().limit})
+        limits = _limits(varying, theta=double_constants().limit)
         return nest(guarded_pairs(program, varying, limits, double_constants()), axes, key.axes)
     if key.form.wide_margins:
         return nest(_lowered_plain(program, varying, key), axes, key.axes)
     stable = counting(key) if has_near_limit(key) else program
     checked = [name for name in varying if name != "theta" or _is_seen(stable, name)]
-    stable = guarded_for_loops(stable, checked, Limits(LEAST), _trigonometry(key))
+    stable = guarded_for_loops(stable, checked, _limits(checked), _trigonometry(key))
     plain = plain_of(key)
     if plain is None:
         return nest(stable, axes, key.axes)
-    test = specialise(("wide_margins",), key.form._replace(under=None), key.fixed)
-    if tells_unsafe(key):
-        test = _where_safe(test, varying)
+    test = wide_margins_test(key.form, key.fixed, varying)
     first = _lowered_plain(plain, varying, key)
     return nest_of_two_forms(first, stable, test, len(key.names), axes, key.axes)
 
@@ -168,91 +158,20 @@ def counting(key: KernelKey) -> Program:
         Line("reach_band", "mul", (NEAR_LIMIT, unsure)),
         Line("near_limit", "lt", ("reach_size", "reach_band"), "bool"),
     )
-    outputs = program.outputs[: len(key.names)]
-    if not tells_unsafe(key):
-        return program._replace(lines=(*program.lines, *lines), outputs=(*outputs, "near_limit"))
-    unsafe = _unsafe([name for name in program.inputs if name in dict(key.axis_of)])
-    told = Line("left_over", "or", ("near_limit", "unsafe"), "bool")
-    return program._replace(lines=(*program.lines, *lines, *unsafe, told), outputs=(*outputs, "left_over"))
+    outputs = *program.outputs[: len(key.names)], "near_limit"
+    return program._replace(lines=(*program.lines, *lines), outputs=outputs)
 
 
-def _unsafe(names: Sequence[str]) -> list[Line]:
-    """Lines of which the last, `unsafe`, says if an input may be.
-
-    A bad input is NaN, and not unsafe: nothing is left to compute. A crank without length is, to save a line.
-    """
+def _limits(varying: Iterable[str], **angle: float) -> Limits:
+    """The valid values of inputs: beyond them products overflow, or vanish (see `mechanism.inputs.SAFE`)."""
     least, most = SAFE
-    names = [name for name in names if name != "theta"]
-    lines = [Line(f"{name}_magnitude", "abs", (name,)) for name in names]
-    found: list[str] = []
-
-    def tell(name: str, op: str, *args: str | float) -> str:
-        lines.append(Line(name, op, args, "bool"))
-        return name
-
-    for name in names:
-        size = f"{name}_magnitude"
-        found.append(tell(f"{name}_large", "lt", most, size))
-        if name in ("AB", "BC"):
-            found.append(tell(f"{name}_small", "lt", size, least))
-        else:
-            parts = tell(f"{name}_small", "lt", size, least), tell(f"{name}_some", "lt", 0.0, size)
-            found.append(tell(f"{name}_lost", "and", *parts))
-    return [*lines, *_joined("or", found, "unsafe")]
-
-
-_Condition = tuple[str, tuple[str | float, ...]]  # the operation and arguments of a line
-
-
-def _where_safe(test: Program, names: Sequence[str]) -> Program:
-    """The test for wide margins, which fails where an input is unsafe too; lengths have fewer ways to be."""
-    (wide,), (least, most) = test.outputs, SAFE
-    # AB is at most 7/8 BC, |ec| less than BC: conditions of the test's own, made narrower.
-    narrower: dict[str, tuple[_Condition, _Condition]] = {
-        "AB": (("le", (0.0, "AB")), ("le", (least, "AB"))),
-        "BC": (("lt", ("BC", inf)), ("le", ("BC", most))),
-    }
-    lines = [line._replace(name="wide_alone") if line.name == wide else line for line in test.lines]
-    for before, after in (narrower[name] for name in names if name in narrower):
-        place = [(line.op, line.args) for line in lines].index(before)
-        lines[place] = lines[place]._replace(op=after[0], args=after[1])
-    held = ["wide_alone"]
-
-    def needs(name: str, op: str, *args: str | float) -> str:
-        lines.append(Line(name, op, args, "bool"))
-        return name
-
-    for name in names:
-        if name in narrower or name == "theta":
-            continue
-        size = f"{name}_magnitude"
-        lines.append(Line(size, "abs", (name,)))
-        if name != "ec":
-            held.append(needs(f"{name}_below", "le", size, most))
-        parts = needs(f"{name}_none", "eq", name, 0.0), needs(f"{name}_above", "le", least, size)
-        held.append(needs(f"{name}_safe", "or", *parts))
-    if len(held) == 1:
-        lines[-1] = lines[-1]._replace(name=wide)
-    else:
-        lines += _joined("and", held, wide)
-    return test._replace(inputs=tuple(dict.fromkeys((*test.inputs, *names))), lines=tuple(lines))
-
-
-def _joined(op: str, conditions: Sequence[str], name: str) -> list[Line]:
-    """Two or more conditions as one of this name."""
-    lines: list[Line] = []
-    before, *others = conditions
-    for count, condition in enumerate(others, 1):
-        own = name if count == len(others) else f"{name}_{count}"
-        lines.append(Line(own, op, (before, condition), "bool"))
-        before = own
-    return lines
+    return Limits({**LEAST, "BC": least}, {**{n: most for n in varying if n != "theta"}, **angle})
 
 
 def _lowered_plain(program: Program, varying: Sequence[str], key: KernelKey) -> Program:
     """Lower the plain form. The wide-margin test implies valid lengths: only other inputs are guarded."""
     own = seen_inputs(program, varying)
-    return guarded_for_loops(program, own, Limits(LEAST), _trigonometry(key), plain=True)
+    return guarded_for_loops(program, own, _limits(own), _trigonometry(key), plain=True)
 
 
 def seen_inputs(program: Program, varying: Sequence[str]) -> list[str]:
@@ -287,7 +206,14 @@ def _extremes(values: Any) -> tuple[float, ...]:
 @lru_cache(maxsize=1024)
 def of_numbers(form: Variant) -> Callable[..., Any]:
     """The test as a function of three numbers."""
-    return compile_python(specialise(*wide_margins_of(form)), LENGTHS)
+    return compile_python(wide_margins_test(form, (), LENGTHS), LENGTHS)
+
+
+def wide_margins_test(form: Variant, fixed: tuple[tuple[str, float], ...], varying: Sequence[str]) -> Program:
+    """The test for wide margins, which fails where BC is invalid; AB and |ec| are less than that."""
+    names, form, _ = wide_margins_of(form)
+    checked = [name for name in varying if name == "BC"]
+    return guard_inputs(specialise(names, form, fixed), checked, *_limits(checked))
 
 
 def wide_margins_of(form: Variant) -> tuple[tuple[str, ...], Variant, tuple[tuple[str, float], ...]]:

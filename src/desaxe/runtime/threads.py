@@ -14,7 +14,7 @@ from ..mechanism.names import LENGTHS
 from ..mechanism.program import Variant
 from ..support.forks import IMPORTS, in_child
 from ..support.signals import put_off
-from .executor import kernel_for
+from .executor import CompiledKernel, kernel_for
 from .kernels import KernelKey, all_have_wide_margins, wide_margins_of
 
 if TYPE_CHECKING:
@@ -60,26 +60,20 @@ in_child(_forget_pools)
 
 def run_in_blocks(
     key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], threads: int | None
-) -> bool:
-    """Run the kernel of a key over its outermost axis in as many blocks as there are threads.
-
-    True if it left points over, which are settled (see `left_over`), or are not safe (see `tells_unsafe`).
-    """
+) -> None:
+    """Run the kernel of a key over its outermost axis in as many blocks as there are threads."""
     kernel = kernel_for(key)
     least = LEAST_BLOCK if key.accuracy == "extended" else least_of(len(outs))
     if outs[0].size < 2 * least:  # too few for a second thread
-        return bool(kernel.run(values, outs)) and _settled(key, values, outs)
-    counted: list[int] = []
+        _run(kernel, key, values, outs)
+        return
     outer = {name for name, axis in key.axis_of if axis == 0}
 
     def block(start: int, stop: int) -> None:
         part = {name: v[start:stop] if name in outer else v for name, v in values.items()}
-        places = [out[start:stop] for out in outs]
-        if kernel.run(part, places) and _settled(key, part, places):
-            counted.append(start)
+        _run(kernel, key, part, [out[start:stop] for out in outs])
 
     in_blocks(block, outs[0].shape[0], outs[0].size, threads, least)
-    return bool(counted)
 
 
 def have_wide_margins(form: Variant, ec: Any, AB: Any, BC: Any) -> bool:
@@ -96,12 +90,13 @@ def have_wide_margins(form: Variant, ec: Any, AB: Any, BC: Any) -> bool:
     return bool(wide.all())
 
 
-def _settled(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> bool:
-    with IMPORTS:
-        from .left_over import settle
+def _run(kernel: CompiledKernel, key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> None:
+    """Run a kernel, and answer the points that it leaves over."""
+    if kernel.run(values, outs):
+        with IMPORTS:
+            from .left_over import settle
 
-    settle(key, values, outs)
-    return True
+        settle(key, values, outs)
 
 
 def least_of(values: int) -> int:
