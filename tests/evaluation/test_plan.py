@@ -1,16 +1,11 @@
 """A plan cut into blocks: each block has the digits of the whole, under loads and in reductions too."""
 
 import tracemalloc
-from typing import NamedTuple
 
 import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.evaluation.axes import outer_of
-from desaxe.evaluation.labels import Output
-from desaxe.evaluation.plan import Plan
-from desaxe.evaluation.points import Points, points_of
 from tests.ways import bits
 
 # One angle is beyond what a kernel's own sine reduces: all blocks then take another kernel, or none.
@@ -120,7 +115,7 @@ PLAIN, LOADED = ("a_C", None), pytest.param("F_C_Y", over_Y, marks=pytest.mark.t
 def test_pieces_of_a_reduced_axis_combine_to_the_whole(quantity, load, most, tmp_path, monkeypatch):
     inputs = {**EDGE, **MASSES, **({"F_Y": load()} if load else {})}
     whole = dx.grid(quantity, reduce=ALL, **inputs)
-    monkeypatch.setattr("desaxe.evaluation.chunks.MOST", most)
+    monkeypatch.setattr("desaxe.evaluation.reductions.reduced.PIECE", most)
     found = dx.grid(quantity, reduce=ALL, **inputs)
     assert found.attrs == whole.attrs
     for name in whole.variables:
@@ -137,7 +132,7 @@ def test_a_function_over_theta_is_cut_along_it(monkeypatch):
     inputs = {**EDGE, **MASSES, "F_Y": dx.over_theta(lambda theta: 90.0 * np.cos(theta))}
     names = [f"F_C_Y_{kind}" for kind in ("absmax", "absmax_theta", "min", "skipped")]
     whole = dx.grid("F_C_Y", reduce={"theta": ["absmax", "min", "rms"]}, **inputs)
-    monkeypatch.setattr("desaxe.evaluation.chunks.MOST", 7)
+    monkeypatch.setattr("desaxe.evaluation.reductions.reduced.PIECE", 7)
     found = dx.grid("F_C_Y", reduce={"theta": ["absmax", "min", "rms"]}, **inputs)
     for name in names:
         np.testing.assert_array_equal(found[name], whole[name])
@@ -150,49 +145,14 @@ def test_a_function_over_theta_is_cut_along_it(monkeypatch):
 )
 def test_what_does_not_combine_has_its_axes_whole(reduce, monkeypatch):
     whole = dx.grid("a_C", reduce=reduce, **EDGE, omega0=5.0)
-    monkeypatch.setattr("desaxe.evaluation.chunks.MOST", 1)
+    monkeypatch.setattr("desaxe.evaluation.reductions.reduced.PIECE", 1)
     assert bits(dx.grid("a_C", reduce=reduce, **EDGE, omega0=5.0)) == bits(whole)
-
-
-class Sum(NamedTuple):
-    """A reduction that the library has not: the sum of a name over theta."""
-
-    dims: tuple
-    of: Points
-    sizes: list
-
-    axes = property(lambda self: self.of.dims)
-    outputs = property(lambda self: {"sum": Output(np.dtype(float), {})})
-
-    def held(self):
-        return ("theta",)
-
-    def combines(self):
-        return True
-
-    def compute(self, values, threads=1):
-        self.sizes.append(values["theta"].size)
-        return {"sum": self.of.compute(values, threads)["Y"].sum(axis=-1)}
-
-    def combine(self, parts, found):
-        return {"sum": np.sum([one["sum"] for one in found], axis=0)}
-
-
-@pytest.mark.parametrize(("most", "pieces"), [(2**20, [10]), (4, [4, 4, 2])])
-def test_a_reduction_is_one_class_which_the_plan_cuts_and_combines(most, pieces, monkeypatch):
-    monkeypatch.setattr("desaxe.evaluation.chunks.MOST", most)
-    inputs = {"ec": np.array([0.0, 0.01]), "theta": np.linspace(0.0, 3.0, 10), "AB": 0.1, "BC": 0.3}
-    outer = outer_of("Y", inputs, 1, None, always=False)
-    step = Sum(("ec",), points_of(["Y"], outer, ("ec", "theta"), 1, "standard"), [])
-    (found,) = Plan(outer, 1, "standard", (step,), ("ec",)).values(1, {"ec": 2}).values()
-    assert step.sizes == pieces
-    np.testing.assert_allclose(found, dx.grid("Y", **inputs).Y.values.sum(axis=-1), rtol=1e-14)
 
 
 @pytest.mark.thorough
 def test_a_long_reduction_fits_into_memory(monkeypatch):
     """Many designs behind one number: a few arrays of some of them at a time."""
-    monkeypatch.setattr("desaxe.evaluation.chunks.MOST", 2**13, raising=False)
+    monkeypatch.setattr("desaxe.evaluation.reductions.reduced.PIECE", 2**13, raising=False)
     lengths = {"ec": np.linspace(0.0, 0.01, 512), "BC": np.linspace(0.3, 0.4, 512)}
     asked = {"theta": [0.5, 1.0], "AB": 0.1, **lengths, "reduce": {("theta", "ec", "BC"): ["max", "mean"]}}
     dx.grid("Y", **asked)  # compiles
@@ -206,7 +166,7 @@ def test_a_long_reduction_fits_into_memory(monkeypatch):
 
 
 def test_a_sweep_stopped_at_any_chunk_has_the_digits_of_the_grid(tmp_path, monkeypatch):
-    monkeypatch.setattr("desaxe.evaluation.chunks.MOST", 2)
+    monkeypatch.setattr("desaxe.evaluation.reductions.reduced.PIECE", 2)
     inputs = {**EDGE, **MASSES, "F_Y": over_Y()}
     whole = bits(dx.grid("F_C_Y", reduce=ALL, **inputs))
     for stopped in (1, 2):

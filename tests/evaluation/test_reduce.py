@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.evaluation import plan
 from desaxe.evaluation.points import Points
 from desaxe.evaluation.reductions import kinds
 from desaxe.evaluation.reductions.reduced import BLOCK
@@ -237,7 +236,7 @@ def test_measures_of_single_names_and_a_function_of_the_design():
 
 def test_a_large_one_is_computed_in_blocks(monkeypatch):
     whole = dx.grid("a_C", reduce={("theta", "ec"): ["p95", "max"]}, **FEASIBLE)
-    monkeypatch.setattr(plan, "POINTS", 1)
+    monkeypatch.setattr("desaxe.evaluation.reductions.reduced.BLOCK", 1)
     assert whole.identical(dx.grid("a_C", reduce={("theta", "ec"): ["p95", "max"]}, **FEASIBLE))
 
 
@@ -259,9 +258,8 @@ def test_in_units_every_result_is_that_of_its_quantity():
 
 
 def test_a_new_kind_of_reduction_is_one_row(monkeypatch):
-    row = kinds.Average("range", lambda rows, counts: np.nanmax(rows, -1) - np.nanmin(rows, -1))
-    monkeypatch.setitem(kinds.OTHERS, "range", row)
-    monkeypatch.setattr(kinds, "NAMES", (*kinds.NAMES, "range"))
+    row = kinds.Kind("range", lambda rows, counts: np.nanmax(rows, -1) - np.nanmin(rows, -1), combines=False)
+    monkeypatch.setitem(kinds.KINDS, "range", row)
     inputs = {"theta": np.linspace(0.0, 6.0, 13), "ec": [0.0, 0.02], "AB": 0.1, "BC": 0.3, "omega0": 5.0}
     values = dx.grid("a_C", **inputs).a_C
     found = dx.grid("a_C", reduce={"theta": "range"}, **inputs).a_C_range

@@ -70,11 +70,10 @@ def test_what_travels_to_a_worker_needs_no_definitions_there(tmp_path):
     (tmp_path / "parts").write_bytes(pickle.dumps((made.plan.all, made.plan.outer.axes)))
     code = """
 import pickle, sys
-from desaxe.evaluation.plan import computed
 steps, axes = pickle.load(open(sys.argv[1], "rb"))
 found = {}
 for step in steps:
-    found |= computed(step, {name: axes[name] for name in step.axes})
+    found |= step.compute({name: axes[name] for name in step.axes})
 pickle.dump((found["shoe_p95"], found["peak_absmax_shoe"]), open(sys.argv[2], "wb"))
 """
     files = [str(tmp_path / file) for file in ("parts", "found")]

@@ -6,8 +6,7 @@ grid           an outer product as a labelled dataset
 axes           its arguments, checked
 chunks         how a grid, or a reduced axis, is cut
 plan           the steps of a grid, its blocks, its dataset
-step           the base class of steps of a plan
-points         a step: values of names by one kernel, loads included
+points         the base class of steps of a plan; a step: values of names by one kernel, loads included
 lazy           a plan as Dask arrays
 labels         units and CF attributes
 quality        condition numbers and error bounds, under loads too

@@ -1,4 +1,4 @@
-"""The chunks of a grid and the pieces of a reduced axis, from the request alone: every machine cuts alike."""
+"""The chunks of a grid, from the request alone: every machine cuts alike."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
@@ -11,7 +11,6 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.spelling import did_you_mean
 
 Slices = dict[str, slice]
-MOST = 2**20  # points behind each number of a result that are in memory at once, where pieces combine
 
 
 def chunk_lengths(chunks: Any, sizes: Mapping[str, int], points: int) -> dict[str, tuple[int, ...]]:
@@ -72,20 +71,6 @@ def slices_of(place: Sequence[int], sizes: Mapping[str, int], chunk: Mapping[str
         name: slice(k * chunk[name], min((k + 1) * chunk[name], sizes[name]))
         for name, k in zip(sizes, place, strict=True)
     }
-
-
-def pieces(values: Mapping[str, Any], axes: Sequence[str]) -> Iterator[dict[str, Any]]:
-    """Yield the values of pieces along the first of some axes; without axes, the whole.
-
-    Their lengths depend on these axes alone, so that sums have one order however a grid is cut.
-    """
-    if not axes:
-        yield dict(values)
-        return
-    cut, *rest = axes
-    length = max(1, MOST // max(1, prod(values[name].size for name in rest)))
-    for start in range(0, max(1, values[cut].size), length):
-        yield {**values, cut: values[cut][start : start + length]}
 
 
 def _is_auto(wanted: Any) -> bool:

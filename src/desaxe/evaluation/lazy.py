@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from ..support.extras import needed
 from .chunks import chunk_lengths
-from .plan import Plan, computed
-from .step import Step
+from .plan import Plan
+from .points import Step
 
 Array = NDArray[Any]
 AUTO = 2**21  # points of a chunk: 16 MiB of doubles
@@ -59,7 +59,7 @@ class ChunkTask(NamedTuple):
 
     def __call__(self, *values: Array) -> dict[str, Array]:
         """The outputs by name."""
-        return computed(self.step, dict(zip(self.step.axes, values, strict=True)), self.threads)
+        return self.step.compute(dict(zip(self.step.axes, values, strict=True)), self.threads)
 
 
 def _output(block: Any, name: str) -> Array:

@@ -4,12 +4,11 @@
     plan.dataset(plan.values(threads))               # `grid`: one block
     for block in plan.blocks(lengths):  # chunks of Dask, of a store, of a search
         for part in block.parts:
-            computed(part.step, block.values, threads)
+            part.step.compute(block.values, threads)
 
 A step is `Points` (values by one kernel, loads included), `Reduced` (what is taken of axes), `AtPlace` or
-`OfDesign`; a sweep adds peaks. It tells its outputs, their types and attributes, what it needs, and how
-pieces of a reduced axis combine; the plan alone decides where a grid or such an axis is cut. A step has no
-arrays and travels.
+`OfDesign`; a sweep adds peaks. It tells its outputs, their types and attributes, and what it needs. A step
+has no arrays and travels.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -22,18 +21,16 @@ from numpy.typing import NDArray
 from ..mechanism.names import LENGTHS
 from ..support.extras import needed
 from .axes import Outer
-from .chunks import Slices, blocks_of, chunk_lengths, longest, pieces, slices_of
+from .chunks import Slices, blocks_of, slices_of
 from .labels import labelled, provenance, with_loads
-from .points import Points, points_of
+from .points import Points, Step, points_of
 from .reductions.argument import Reductions
 from .reductions.reduced import Reduced, reduced_of
-from .step import Step
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[Any]
-POINTS = 2**22  # of a grid that are in memory at once to be reduced, where what is left of it allows that
 
 
 class Part(NamedTuple):
@@ -122,25 +119,14 @@ class Plan(NamedTuple):
             needed = dict.fromkeys(name for part in parts for name in part.step.axes)
             yield Block(regions, parts, {n: axes[n][regions[n]] if n in regions else axes[n] for n in needed})
 
-    def values(
-        self,
-        threads: int | None,
-        lengths: Mapping[str, int] | None = None,
-        before: Callable[[], None] = lambda: None,
-    ) -> dict[str, Array]:
-        """All variables by name, from blocks of these lengths; `before` is called before each."""
-        lengths = self._in_memory() if lengths is None else lengths
-        whole = all(lengths[name] >= size for name, size in self.sizes.items())
-        if whole:
-            before()
-            axes = self.outer.axes
-            return {n: a for step in self.all for n, a in computed(step, axes, threads).items()}
-        return self._by_blocks(threads, lengths, before)
+    def values(self, threads: int | None) -> dict[str, Array]:
+        """All variables by name."""
+        return {n: a for step in self.all for n, a in step.compute(self.outer.axes, threads).items()}
 
-    def _by_blocks(
+    def values_by_blocks(
         self, threads: int | None, lengths: Mapping[str, int], before: Callable[[], None]
     ) -> dict[str, Array]:
-        """All variables by name, block by block."""
+        """All variables by name, from blocks of these lengths; `before` is called before each."""
         sizes = self.sizes
         found = {
             name: np.empty([sizes[n] for n in step.dims], output.dtype)
@@ -150,15 +136,9 @@ class Plan(NamedTuple):
         for block in self.blocks(lengths):
             before()
             for part in block.parts:
-                for name, array in computed(part.step, block.values, threads).items():
+                for name, array in part.step.compute(block.values, threads).items():
                     found[name][part.region] = array
         return found
-
-    def _in_memory(self) -> dict[str, int]:
-        """The lengths of blocks that fit into memory before they are reduced; the whole without that."""
-        if not any(step.held() for step in self.steps):
-            return {name: max(1, size) for name, size in self.sizes.items()}
-        return longest(chunk_lengths("auto", self.sizes, max(1, POINTS // max(self.behind, 1))))
 
     def empty(self) -> "xr.Dataset":
         """The labelled Dataset with lazy variables, of which none is computed."""
@@ -211,10 +191,3 @@ def margin_of(outer: Outer, branch: int, accuracy: Any, dims: Sequence[str]) -> 
     if not all(name in outer.axes and (name in dims or name not in outer.dimensions) for name in LENGTHS):
         return ()
     return (points_of(["margin"], outer, outer.lengths, branch, accuracy),)
-
-
-def computed(step: Step, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
-    """The outputs of a step in a block; axes that it holds in memory are cut where that changes nothing."""
-    parts = [*pieces(values, step.held() if step.combines() else ())]
-    found = [step.compute(part, threads) for part in parts]
-    return found[0] if len(found) == 1 else step.combine(parts, found)

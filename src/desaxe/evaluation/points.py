@@ -1,10 +1,11 @@
-"""Quantities over some axes of a grid, by one kernel: a step of a plan.
+"""A step of a plan: some variables over the same dimensions, computed in any block of a grid.
 
 Which kernel answers a request depends on its inputs (all designs have wide margins, some angle is huge, an
 input is 0). So it is chosen once, from all of the inputs, and every block takes it, even a block of one
 point: cutting a grid changes no digit.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -18,11 +19,44 @@ from ..runtime.request import Request
 from .arrays import Loops, copied_back, dtype_of, evaluate_arrays, fill, outputs_for, scratch_for
 from .axes import Outer, require_inputs
 from .labels import Output, attributes
-from .step import Step
 from .under_loads.loaded import evaluate_loaded
 from .under_loads.request import LoadInputs, request_of
 
 Array = NDArray[Any]
+
+
+@dataclass(frozen=True)
+class Step(ABC):
+    """Base class of steps.
+
+    dims   the dimensions of the outputs, in their order
+    """
+
+    dims: tuple[str, ...]
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """The dimensions whose values the step needs; those that are reduced are whole in every block."""
+        return self.dims
+
+    @property
+    def own(self) -> tuple[Definition, ...]:
+        """The definitions that it needs, but for those that the request of a store tells."""
+        return ()
+
+    @property
+    def identity(self) -> str:
+        """A text that tells the step from all others."""
+        return repr(self)
+
+    @property
+    @abstractmethod
+    def outputs(self) -> dict[str, Output]:
+        """The outputs by name: their types and CF attributes."""
+
+    @abstractmethod
+    def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
+        """The outputs of a block by name, from the values along each of its `axes`."""
 
 
 @dataclass(frozen=True)

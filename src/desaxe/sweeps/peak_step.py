@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..evaluation.axes import Outer
 from ..evaluation.labels import Output, attributes, side_attributes
-from ..evaluation.step import Step
+from ..evaluation.points import Step
 from ..loads.angles import cycle
 from ..mechanism.names import sensitivity
 from ..mechanism.own import Definition, using

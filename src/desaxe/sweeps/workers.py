@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from numpy.typing import NDArray
 
-from ..evaluation.plan import Block, computed
+from ..evaluation.plan import Block
 from ..mechanism.program import digest
 from ..support.extras import needed
 from ..support.version import version as desaxe_version
@@ -39,7 +39,7 @@ class BlockWork(NamedTuple):
             missing = [n for n in part.step.outputs if self.root is None or not is_whole(self.root, n, part)]
             if missing:
                 back = back or []
-                values = computed(part.step, block.values, self.threads)
+                values = part.step.compute(block.values, self.threads)
                 if self.root is None:
                     back.append((part.region, values))
                     continue

@@ -19,7 +19,7 @@ from ...mechanism.spelling import did_you_mean
 from ...runtime.request import as_number
 from ...support.shown import shown
 from ...units.text import with_unit_of
-from .kinds import ALLOWED, EXTREMES, KINDS, kind_of
+from .kinds import ALLOWED, kind_name, kind_of
 from .own_measure import OwnMeasure
 
 Chain = Sequence[tuple[tuple[str, ...], str]]  # axes and what is taken of them, one after the other
@@ -82,7 +82,8 @@ class Reductions(NamedTuple):
         """The request as kinds along one axis that a kernel computes; None where it is more than that."""
         stage = self.stages[0]
         more = self.at or self.functions or stage.single or len(self.stages) > 1 or len(stage.axes) > 1
-        return None if more or set(stage.kinds) - set(KINDS) else Reduction(stage.axes[0], stage.kinds)
+        more = more or not all(kind_of(kind).combines for kind in stage.kinds)
+        return None if more else Reduction(stage.axes[0], stage.kinds)
 
     def plain(self) -> dict[str, list[Any]]:
         """The request in plain lists, which tell it from another."""
@@ -119,7 +120,7 @@ def extremes_at_end(chain: Chain) -> tuple[str, ...]:
     """The axes along which the result of a chain has a place: those since its last average."""
     found: tuple[str, ...] = ()
     for axes, kind in chain:
-        found = (*found, *axes) if kind in EXTREMES else ()
+        found = (*found, *axes) if kind_of(kind).score else ()
     return found
 
 
@@ -143,7 +144,7 @@ def reductions_of(asked: Any, dimensions: Sequence[str], names: Sequence[str]) -
         for one in _listed(key, taken):
             measure = _measure(one)
             if measure is None:
-                kinds[kind_of(one)] = None
+                kinds[kind_name(one)] = None
             elif len(entries) > 1:
                 raise ValueError(
                     f"reduce: {shown(one)}: a measure of one name goes along one axis, without others"
@@ -153,7 +154,7 @@ def reductions_of(asked: Any, dimensions: Sequence[str], names: Sequence[str]) -
             elif measure[0] == "at":
                 at.append(_at(axes, *measure[1:]))
             else:
-                single[kind_of(measure[0]), measure[1]] = None
+                single[kind_name(measure[0]), measure[1]] = None
         if not (kinds or single or at or functions):
             raise ValueError(f"reduce: nothing is taken of {_text(axes)}; allowed: {ALLOWED}")
         found.append(Stage(axes, tuple(kinds), tuple(single)))
@@ -244,12 +245,12 @@ def _measure(one: Any) -> OwnMeasure | tuple[Any, ...] | None:
         return None
     if isinstance(kind, str):
         return (kind, name) if _is_kind(kind) and not _is_kind(name) else None
-    return kind_of(kind), name  # (("percentile", 95), name)
+    return kind_name(kind), name  # (("percentile", 95), name)
 
 
 def _is_kind(text: str) -> bool:
     try:
-        return bool(kind_of(text))
+        return bool(kind_name(text))
     except ValueError:
         return False
 

@@ -2,35 +2,35 @@
 
     steps = reduced_of(outer, branch, accuracy, reductions)   # the kinds of all names, then each measure
 
-Extremes, means and roots of mean squares are taken along one axis block by block, and the grid is never
-stored; the rest is folded in memory. Where all kinds combine, what is taken of pieces of an axis is merged;
-of others (std, percentiles, one kind after another) axes are whole.
+The grid is never stored: its points are computed and reduced block by block. Where all kinds combine, a long
+axis is cut, too; for others (std, percentiles) the axes that are reduced first are whole in every block.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import prod
+from itertools import groupby
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...mechanism.catalogue import quantity
 from ...mechanism.own import Definition
 from ...runtime.threads import run_parts
 from ..axes import Outer
-from ..chunks import blocks_of, chunk_lengths, longest, slices_of
+from ..chunks import Slices, blocks_of, chunk_lengths, longest, slices_of
 from ..labels import Output, attributes, input_attributes, side_attributes
-from ..points import Points, points_of
-from ..step import Step
+from ..points import Points, Step, points_of
 from ..under_loads.sides import sides_of
-from .argument import Chain, Reductions, chain_name, extremes_at_end
-from .in_memory import Field, combined, field_of, folded
-from .kinds import KINDS, kind_called
-from .measures import AtPlace, OfDesign
+from .argument import At, Chain, Reductions, chain_name, extremes_at_end
+from .kinds import Field, combined, field_of, folded, kind_of
+from .own_measure import OwnMeasure
 
 Array = NDArray[Any]
+Fields = dict[tuple[str, str], Field]  # by name and kind
 FLOAT = np.dtype(np.float64)
 BLOCK = 2**16  # points whose values stay in the second-level cache
+PIECE = 2**20  # points behind a number that are in memory at once, where pieces combine
 BLOCKS = 64  # of a part: an interrupt is heard after it
 
 
@@ -40,19 +40,17 @@ class Reduced(Step):
 
     names       those of which a kind is taken
     reductions  what is taken
-    of          the values of `names`
-    along       the last of its axes, if it is reduced first, block by block
+    of          the values of `names`: over the axes that are left, those reduced later, those reduced first
     """
 
     names: tuple[str, ...]
     reductions: Reductions
     of: Points
-    along: str | None
 
     @property
     def axes(self) -> tuple[str, ...]:
         """The dimensions whose values the step needs."""
-        return (*self.dims, *self.reductions.axes)
+        return self.of.dims
 
     @property
     def own(self) -> tuple[Definition, ...]:
@@ -65,43 +63,30 @@ class Reduced(Step):
         return f"{self!r} {self.of.identity}"
 
     @property
-    def _chains(self) -> list[tuple[str, Chain]]:
-        """Each name with the kinds that are taken of it, one after the other."""
-        return [(name, chain) for name in self.names for chain in self.reductions.chains(name)]
-
-    def held(self) -> tuple[str, ...]:
-        """The reduced axes whose points are in memory behind each number of the outputs."""
-        return *(name for name in self.reductions.axes if name != self.along), *filter(None, [self.along])
-
-    def combines(self) -> bool:
-        """True if all that is taken follows from what is taken of pieces."""
-        return all(len(chain) == 1 and kind_called(chain[0][1]).combines for _, chain in self._chains)
-
-    @property
     def outputs(self) -> dict[str, Output]:
         """The outputs by name: their types and CF attributes."""
-        found: dict[str, Output] = {}
+        result: dict[str, Output] = {}
         along = ", ".join(self.reductions.axes)
         for name in self.names:
             for chain in self.reductions.chains(name):
-                found |= self._outputs(name, chain)
+                result |= self._outputs(name, chain)
             words = f"points along {along} without a {name} (infeasible, stalled, bad)"
-            found[f"{name}_skipped"] = Output(np.dtype(np.int64), {"units": "1", "long_name": words})
-        return found
+            result[f"{name}_skipped"] = Output(np.dtype(np.int64), {"units": "1", "long_name": words})
+        return result
 
     def _outputs(self, name: str, chain: Chain) -> dict[str, Output]:
         """The result of a chain, where it is, and on which side of a jump."""
         variable = chain_name(name, chain)
-        method = " ".join(": ".join((*axes, kind_called(kind).method)) for axes, kind in chain)
+        method = " ".join(": ".join((*axes, kind_of(kind).method)) for axes, kind in chain)
         about = attributes(name, self.of.wanted.form.state)
-        found = {variable: Output(FLOAT, {**about, "quantity": name, "cell_methods": method})}
+        result = {variable: Output(FLOAT, {**about, "quantity": name, "cell_methods": method})}
         for axis in extremes_at_end(chain):
             place = input_attributes(axis)
             words = f"{place['long_name']} of the {variable.removeprefix(f'{name}_')} of {name}"
-            found[f"{variable}_{axis}"] = Output(FLOAT, {**place, "long_name": words, "quantity": axis})
+            result[f"{variable}_{axis}"] = Output(FLOAT, {**place, "long_name": words, "quantity": axis})
         if self._has_side(chain):
-            found[f"{variable}_side"] = Output(np.dtype(np.int8), side_attributes())
-        return found
+            result[f"{variable}_side"] = Output(np.dtype(np.int8), side_attributes())
+        return result
 
     def _has_side(self, chain: Chain) -> bool:
         """True if the result of a chain is a sample over theta under loads that may jump."""
@@ -109,87 +94,61 @@ class Reduced(Step):
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The outputs of a block by name, from the values along each of its `axes`."""
-        fields, counts = self._chained(values, threads)
-        total = self._points(values, self.reductions.axes)
-        return self._named(fields, {name: total - count for name, count in counts.items()}, values)
-
-    def combine(
-        self, parts: Sequence[Mapping[str, Array]], found: Sequence[dict[str, Array]]
-    ) -> dict[str, Array]:
-        """The outputs of a block from those of its pieces, in their order: sums go piece by piece."""
-        totals = [self._points(part, self.reductions.axes) for part in parts]
-        fields: dict[str, Field] = {}
-        for name, chain in self._chains:
-            variable, skipped, axes = chain_name(name, chain), f"{name}_skipped", extremes_at_end(chain)
-            own = [
-                Field(
-                    self.dims, one[variable], total - one[skipped], {n: one[f"{variable}_{n}"] for n in axes}
-                )
-                for total, one in zip(totals, found, strict=True)
-            ]
-            fields[variable] = combined(own, chain[-1][1])
-        skipped_of = {name: np.sum([one[f"{name}_skipped"] for one in found], axis=0) for name in self.names}
-        return self._named(fields, skipped_of, parts[0])
-
-    @staticmethod
-    def _points(values: Mapping[str, Array], axes: Sequence[str]) -> int:
-        return prod(values[axis].size for axis in axes)
-
-    def _named(
-        self, fields: Mapping[str, Field], skipped: Mapping[str, Array], values: Mapping[str, Array]
-    ) -> dict[str, Array]:
-        """The outputs by name, with the places of extremes and their sides of jumps."""
-        found: dict[str, Array] = {}
-        for name, chain in self._chains:
-            variable = chain_name(name, chain)
-            field = fields[variable]
-            found[variable] = field.values
-            found |= {f"{variable}_{axis}": field.places[axis] for axis in extremes_at_end(chain)}
-            if self._has_side(chain):
-                found[f"{variable}_side"] = self._side(name, field, values)
-            found[f"{name}_skipped"] = skipped[name]
-        return found
-
-    def _chained(
-        self, values: Mapping[str, Array], threads: int | None
-    ) -> tuple[dict[str, Field], dict[str, Array]]:
-        """The results of all chains, one stage after the other; and how many points of each name count."""
-        found: dict[str, Field] = {}
-        counts: dict[str, Array] = {}
+        result: dict[str, Array] = {}
         firsts = self._firsts(values, threads)
-        for name, chain in self._chains:
-            (axes, kind), *rest = chain
-            first = firsts[name, kind]
-            field = folded(first, [axis for axis in axes if axis in first.dims], kind, values)
-            for axes, kind in rest:
-                field = folded(field_of(field.dims, field.values, field.places), axes, kind, values)
-            found[chain_name(name, chain)] = field
-            counts[name] = first.points([axis for axis in first.dims if axis not in self.dims])
-        return found, counts
+        for name in self.names:
+            for chain in self.reductions.chains(name):
+                (axes, kind), *rest = chain
+                first = firsts[name, kind]
+                field = folded(first, [axis for axis in axes if axis in first.dims], kind, values)
+                for axes, kind in rest:
+                    field = folded(field_of(field.dims, field.values, field.places), axes, kind, values)
+                variable = chain_name(name, chain)
+                result[variable] = field.values
+                result |= {f"{variable}_{axis}": field.places[axis] for axis in extremes_at_end(chain)}
+                if self._has_side(chain):
+                    result[f"{variable}_side"] = self._side(name, field, values)
+            later = tuple(range(len(self.dims), len(first.dims)))
+            points = np.prod([values[axis].size for axis in self.reductions.axes], dtype=np.int64)
+            result[f"{name}_skipped"] = np.asarray(points - first.points.sum(axis=later))
+        return result
 
-    def _firsts(self, values: Mapping[str, Array], threads: int | None) -> dict[tuple[str, str], Field]:
-        """The values by name and kind of the first stage, reduced along one axis if that goes by blocks."""
-        stage, dims, along = self.reductions.stages[0], self.of.dims, self.along
+    def _firsts(self, values: Mapping[str, Array], threads: int | None) -> Fields:
+        """The values by name and kind, reduced along the axes that are reduced first."""
+        stage, dims = self.reductions.stages[0], self.of.dims
+        rest, first = dims[: -len(stage.axes)], dims[-len(stage.axes) :]
         kinds = [(name, kind) for name in self.names for kind in stage.kinds_of(name)]
-        if along is None:
-            fields = {name: field_of(dims, array) for name, array in self.of.compute(values, threads).items()}
-            return {(name, kind): fields[name] for name, kind in kinds}
-        rest, length = dims[:-1], values[along].size
-        sizes = {name: values[name].size for name in rest}
-        lengths = longest(chunk_lengths("auto", sizes, max(1, BLOCK // max(1, length))))
-        regions = [slices_of(index, sizes, lengths) for index in blocks_of(sizes, lengths)]
-        found = {key: _empty(rest, sizes, along) for key in kinds}
+        sizes = {name: values[name].size for name in dims}
+        regions = [*self._regions(sizes, rest, all(kind_of(kind).combines for _, kind in kinds))]
+        parts: list[Fields] = [{}] * len(regions)
 
         def part(start: int, stop: int) -> None:
-            for region in regions[start:stop]:
-                block = {**values, **{name: values[name][one] for name, one in region.items()}}
-                fields = {name: field_of(dims, array) for name, array in self.of.compute(block, 1).items()}
-                for name, kind in kinds:
-                    one = folded(fields[name], [along], kind, values)
-                    found[name, kind].fill(tuple(region.values()), one)
+            for k in range(start, stop):
+                block = {**values, **{name: values[name][one] for name, one in regions[k].items()}}
+                fields = {n: field_of(dims, a) for n, a in self.of.compute(block, 1).items()}
+                parts[k] = {key: folded(fields[key[0]], first, key[1], block) for key in kinds}
 
         run_parts(part, len(regions), threads, 2, BLOCKS)
-        return found
+        result = {key: _empty(rest, sizes, first if kind_of(key[1]).score else ()) for key in kinds}
+        for place, group in groupby(range(len(regions)), lambda k: [regions[k][name] for name in rest]):
+            pieces = [parts[k] for k in group]
+            for key, field in result.items():
+                _fill(field, tuple(place), combined([one[key] for one in pieces], key[1]))
+        return result
+
+    def _regions(self, sizes: Mapping[str, int], rest: Sequence[str], combines: bool) -> Iterator[Slices]:
+        """The blocks of a grid: pieces of the axes that are reduced first, in their order, for some others.
+
+        The pieces depend on these axes alone, so that sums have one order however a grid is cut.
+        """
+        first = {name: size for name, size in sizes.items() if name not in rest}
+        pieces = longest(chunk_lengths("auto" if combines else -1, first, PIECE))
+        points = int(np.prod([min(pieces[name], max(size, 1)) for name, size in first.items()]))
+        others = chunk_lengths("auto", {name: sizes[name] for name in rest}, max(1, BLOCK // points))
+        lengths = {**longest(others), **pieces}
+        whole = {name: max(size, 1 if name in first else 0) for name, size in sizes.items()}
+        for place in blocks_of(whole, lengths):
+            yield slices_of(place, whole, lengths)
 
     def _side(self, name: str, field: Field, values: Mapping[str, Array]) -> Array:
         """The sides of jumps on which extremes over theta are; 0 where other inputs were averaged."""
@@ -202,44 +161,91 @@ class Reduced(Step):
         return sides_of(name, self.of, flat).reshape(shape)
 
 
+def _empty(dims: tuple[str, ...], sizes: Mapping[str, int], axes: Sequence[str]) -> Field:
+    """A field to be filled, with positions along axes."""
+    shape = [sizes[name] for name in dims]
+    places = {axis: np.empty(shape) for axis in axes}
+    return Field(dims, np.empty(shape), np.empty(shape, np.int64), places)
+
+
+def _fill(field: Field, region: tuple[slice, ...], part: Field) -> None:
+    """Fill a region of a field."""
+    for own, values in zip((field.values, field.points), (part.values, part.points), strict=True):
+        own[region] = values
+    for axis, places in part.places.items():
+        field.places[axis][region] = places
+
+
+@dataclass(frozen=True)
+class AtPlace(Step):
+    """The values of a name at one place of an axis."""
+
+    axis: str
+    at: At
+    of: Points
+
+    @property
+    def identity(self) -> str:
+        """A text that tells the step from all others, by what its loads are too."""
+        return f"{self!r} {self.of.identity}"
+
+    @property
+    def outputs(self) -> dict[str, Output]:
+        """The output: its type and CF attributes."""
+        name, state = self.at.name, self.of.wanted.form.state
+        words = f"{quantity(name, state).meaning} at {self.axis} = {self.at.text}"
+        about = {**attributes(name, state), "long_name": words, "quantity": name}
+        return {self.at.variable: Output(FLOAT, about)}
+
+    def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
+        """The output of a block, from the values along each of its `axes`."""
+        columns = {**values, self.axis: np.array([self.at.place])}
+        return {self.at.variable: self.of.compute(columns, threads)[self.at.name][..., 0]}
+
+
+@dataclass(frozen=True)
+class OfDesign(Step):
+    """A user's function of the design, with its derivatives by some parameters."""
+
+    function: OwnMeasure
+    numbers: tuple[tuple[str, float], ...]
+    slopes: tuple[str, ...]
+
+    @property
+    def outputs(self) -> dict[str, Output]:
+        """The outputs by name: their types and CF attributes."""
+        name = self.function.name
+        slopes = [f"{name}_wrt_{p}" for p in self.slopes]
+        first = {name: Output(FLOAT, {"long_name": f"{name} of the design"})}
+        return first | {slope: Output(FLOAT, {"long_name": slope}) for slope in slopes}
+
+    def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
+        """The outputs of a block by name, from the values along each of its dimensions."""
+        grids = np.meshgrid(*(values[name] for name in self.dims), indexing="ij")
+        shape = tuple(values[name].size for name in self.dims)
+        value, gradient = self.function({**dict(self.numbers), **dict(zip(self.dims, grids, strict=True))})
+        arrays = [value, *(gradient.get(p, 0.0) for p in self.slopes)]
+        return {n: np.array(np.broadcast_to(a, shape)) for n, a in zip(self.outputs, arrays, strict=True)}
+
+
 def reduced_of(outer: Outer, branch: int, accuracy: Any, reductions: Reductions) -> tuple[Step, ...]:
     """The steps of what is taken of a grid, checked: the kinds of all names, then each measure."""
     dims = tuple(name for name in outer.dimensions if name not in reductions.axes)
     names = tuple(name for name in outer.names if reductions.chains(name))
     steps: list[Step] = []
     if names:
-        of, along = _values_of(names, dims, outer, branch, accuracy, reductions)
-        steps.append(Reduced(dims, names, reductions, of, along))
+        last = "theta", *sorted(outer.axes, key=lambda name: -outer.axes[name].size)
+        stage, *_ = reductions.stages
+        along = next(name for name in last if name in stage.axes)
+        first = *(name for name in stage.axes if name != along), along
+        later = (name for name in reductions.axes if name not in first)
+        of = points_of(names, outer, (*dims, *later, *first), branch, accuracy)
+        steps.append(Reduced(dims, names, reductions, of))
     for one in reductions.at:
         axis = reductions.axes[0]
         there = outer._replace(axes={**outer.axes, axis: np.array([one.place])})
         steps.append(AtPlace(dims, axis, one, points_of((one.name,), there, (*dims, axis), branch, accuracy)))
     numbers = tuple((name, float(array)) for name, array in outer.axes.items() if not array.ndim)
-    first = {**dict(numbers), **{n: outer.axes[n][:1] for n in dims}}
-    steps += [
-        OfDesign(dims, function, numbers, tuple(function(first)[1])) for function in reductions.functions
-    ]
+    first_design = {**dict(numbers), **{n: outer.axes[n][:1] for n in dims}}
+    steps += [OfDesign(dims, one, numbers, tuple(one(first_design)[1])) for one in reductions.functions]
     return tuple(steps)
-
-
-def _values_of(
-    names: Sequence[str],
-    dims: Sequence[str],
-    outer: Outer,
-    branch: int,
-    accuracy: Any,
-    reductions: Reductions,
-) -> tuple[Points, str | None]:
-    """The values of names over all axes, and the last of these if it is reduced first, block by block."""
-    stage, axes = reductions.stages[0], (*dims, *reductions.axes)
-    if {kind for name in names for kind in stage.kinds_of(name)} - set(KINDS):
-        return points_of(names, outer, axes, branch, accuracy), None
-    along = "theta" if "theta" in stage.axes else max(stage.axes, key=lambda name: outer.axes[name].size)
-    last = *(name for name in axes if name != along), along
-    return points_of(names, outer, last, branch, accuracy), along
-
-
-def _empty(dims: tuple[str, ...], sizes: Mapping[str, int], along: str) -> Field:
-    """A field to be filled, of values that are reduced along an axis."""
-    values, places = (np.empty([*sizes.values()]) for _ in range(2))
-    return Field(dims, values, np.empty(values.shape, np.int64), {along: places})

@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 from ...compiler.kernel import Kernel
 from ...compiler.passes.double_double import double_double
 from ...evaluation.plan import Plan
-from ...evaluation.reductions.reduced import Reduced
 from ...loads.load import Load
 from ...loads.words import brief
 from ...mechanism.catalogue import quantity
@@ -216,9 +215,7 @@ def _reduction(plan: Plan) -> dict[str, Any] | None:
     taken = plan.reductions
     if taken is None:
         return None
-    (step, *_) = plan.steps
-    stored = isinstance(step, Reduced) and step.along is None
-    return {"axis": ", ".join(taken.axes), "kinds": taken.kinds, "stored": stored}
+    return {"axis": ", ".join(taken.axes), "kinds": taken.kinds}
 
 
 def _compiled_loops(found: GridKernel) -> list[LoopCost]:

@@ -5,8 +5,7 @@ from typing import NamedTuple
 
 from ...evaluation.plan import Plan
 from ...evaluation.points import Points
-from ...evaluation.reductions.measures import AtPlace
-from ...evaluation.reductions.reduced import Reduced
+from ...evaluation.reductions.reduced import AtPlace, Reduced
 from ...loads.along_motion import OfMotion
 from ...loads.load import Load, OverTheta, TableOverTheta
 

@@ -32,8 +32,9 @@ def _asked(plan: Mapping[str, Any]) -> list[Block]:
         rows = [(out["name"], printed(out["unit"]), out["meaning"]) for out in plan["outputs"]]
         blocks.append(TextTable(("", "", ""), rows, is_cut=True))
         taken = plan["reduction"]
-        how = "block by block" if taken and taken["stored"] else "the grid is not stored"
-        of_each = taken and f"of each over {taken['axis']}: {', '.join(taken['kinds'])}; {how}"
+        of_each = (
+            taken and f"of each over {taken['axis']}: {', '.join(taken['kinds'])}; the grid is not stored"
+        )
         blocks.append(Text(of_each or "and at every point its status; the margin once per design"))
     inputs = plan["inputs"]
     facts = {

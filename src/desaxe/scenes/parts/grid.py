@@ -40,7 +40,8 @@ def values_of_grid(setting: Setting, steps: Steps) -> "xr.Dataset":
         arrays = plan.values(setting.threads)
     else:
         first = dict.fromkeys(list(plan.sizes)[:1], blocks_of(setting)[1])
-        arrays = plan.values(setting.threads, {**plan.sizes, **first}, lambda: steps.next("values"))
+        lengths = {name: max(1, size) for name, size in (plan.sizes | first).items()}
+        arrays = plan.values_by_blocks(setting.threads, lengths, lambda: steps.next("values"))
     return plan.dataset(arrays).assign_attrs(setting.provenance)
 
 
