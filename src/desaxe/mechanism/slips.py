@@ -83,7 +83,7 @@ def _typed(written: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
         numbers = _numbers(value)
         if not isinstance(value, Between):
             numbers = [max(numbers, key=abs)] if numbers else []
-        yield from ((name, number) for number in numbers if _is_typed(number))
+        yield from ((name, number) for number in numbers if isinstance(name, str) and _is_typed(number))
 
 
 def _numbers(value: Any) -> list[float]:
