@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
-from ..evaluation.under_loads.loaded import loads_of
 from ..loads.angles import turns_of
 from ..mechanism.catalogue import has
 from ..mechanism.inputs import INPUTS
-from ..mechanism.names import LENGTHS, sensitivity
+from ..mechanism.names import sensitivity
 from ..runtime.request import as_number
 from .turn.cycle import MOST_TURNS, Cycle
+from .turn.rows import input_rows
 
 Array = NDArray[np.float64]
 AVERAGES = ("mean", "rms")
@@ -29,21 +29,12 @@ def average(kind: str, name: str, designs: Mapping[str, Any], branch: int) -> tu
     if "sliders" in designs:
         raise TypeError(f"{kind} of {name}: `drive` has those of a crankshaft's torque, `harmonics` the mean")
     inputs = _inputs(designs)
-    for length in LENGTHS:
-        if length not in inputs:
-            as_number(length, None, LENGTHS, (f"{kind} of {name}",))
-    numbers, loads = loads_of(inputs)
-    turns = turns_of(f"the {kind} of {name}", loads, MOST_TURNS)
-    slopes = _slopes(name, inputs)
-    shape = np.broadcast_shapes(*(np.shape(v) for v in numbers.values()))
-    rows = {p: np.broadcast_to(v, shape).ravel() if np.ndim(v) else v for p, v in numbers.items()}
-    size = int(np.prod(shape))
-    found = np.empty((1 + len(slopes), size))
-    for first in range(0, size, BLOCK):
-        part = slice(first, first + BLOCK)
-        block = {p: v[part] if np.ndim(v) else v for p, v in rows.items()}
-        found[:, part] = _averages(kind, [name, *slopes.values()], Cycle(block, loads, branch, turns), slopes)
-    value, *gradient = found.reshape(-1, *shape)
+    slopes, rows = _slopes(name, inputs), input_rows(f"{kind} of {name}", inputs)
+    turns = turns_of(f"the {kind} of {name}", rows.loads, MOST_TURNS)
+    cycle = Cycle(rows.numbers, rows.loads, branch, turns)
+    blocks = [np.arange(first, min(first + BLOCK, rows.size)) for first in range(0, rows.size, BLOCK)]
+    averages = [_averages(kind, [name, *slopes.values()], cycle.part(block), slopes) for block in blocks]
+    value, *gradient = np.concatenate(averages, axis=1).reshape(-1, *rows.shape)
     return value, dict(zip(slopes, gradient, strict=True))
 
 

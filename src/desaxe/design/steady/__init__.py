@@ -3,11 +3,10 @@
 steady    `desaxe.steady`: all periodic motions of a machine, the stable one at the highest speed first
 source    a torque of any kind over angle and speed
 designs   designs in rows, and the equation of motion over the crank angle
-linear    linear periodic equations along their panels
 scan      turns from many speeds, and the changes of sign of what a turn gains
 orbit     periodic motions by Newton's method, on panels between kinks
-slopes    their derivatives by every number
-figures   period, speeds, work and power, and their derivatives
+linear    linear periodic equations along their panels
+figures   period, speeds, work and power, and their derivatives by every number
 states    from designs to all of their steady states
 inertia   the flywheel for a wanted fluctuation
 why       why a design has no steady state

@@ -1,6 +1,6 @@
 """The result of `steady`: which of the periodic motions it is, the others, and why there is none."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,8 +12,8 @@ from ...support.forks import IMPORTS
 from .designs import DesignRows
 from .figures import KEYS, STEPS
 from .source import source_of
-from .states import States, main_of
-from .why import why_none
+from .states import States
+from .why import JAMS, why_none
 
 Array = NDArray[Any]
 NUMBERS = ("period", "omega_mean", "fluctuation", "power_mean", "work", "multiplier")
@@ -53,89 +53,92 @@ class Steady(Answer):
 
 def result_of(shape: tuple[int, ...], parts: Sequence[Part], about: Mapping[str, Any]) -> Steady:
     """The result in the shape of the designs."""
-    found = _empty(int(np.prod(shape)), max((part for _, part, *_ in parts), key=lambda part: part.size))
+    rows = _empty(int(np.prod(shape)), max((part for _, part, *_ in parts), key=lambda part: part.size))
     for index, designs, states, wheel in parts:
-        _fill(found, index, designs, states, wheel)
-    result = Steady(_shaped(found, shape) if shape else _first(found), _units)
+        _fill(rows, index, designs, states, wheel)
+    result = Steady(
+        _mapped(rows, lambda v: v.reshape(*shape, *v.shape[1:]) if shape else _plain(v[0])), _units
+    )
     result.inputs, result.torque, result.branch = about["inputs"], about["torque"], about["branch"]
     return result
 
 
-def _units(found: Mapping[str, Any]) -> dict[str, Any]:
+def _units(result: Mapping[str, Any]) -> dict[str, Any]:
     """The units of a steady state, and of the others."""
-    units = units_by_name(found)
+    units = units_by_name(result)
     return {**units, "others": units}
 
 
 def _empty(count: int, designs: DesignRows) -> dict[str, Any]:
     """Rows of designs with bad inputs."""
-    steps = STEPS * designs.turns + 1
-    nothing = {name: np.full((count, steps), np.nan) for name in COURSE}
-    objects = {"others": np.empty(count, object), "message": np.full(count, "bad input", object)}
-    objects["others"][:] = [[] for _ in range(count)]
+    steps, others = STEPS * designs.turns + 1, np.empty(count, object)
+    others[:] = [[] for _ in range(count)]
     return {
-        **nothing, **{name: np.full(count, np.nan) for name in NUMBERS}, "stable": np.zeros(count, bool),
-        "gradient": {key: {} for key in KEYS}, "flywheel_inertia": np.full(count, np.nan),
-        "others": objects["others"], "status": np.full(count, 4, np.int8), "message": objects["message"],
+        **{name: np.full((count, steps), np.nan) for name in COURSE},
+        **{name: np.full(count, np.nan) for name in NUMBERS}, "stable": np.zeros(count, bool),
+        "gradient": {key: {} for key in KEYS}, "flywheel_inertia": np.full(count, np.nan), "others": others,
+        "status": np.full(count, 4, np.int8), "message": np.full(count, "bad input", object),
     }  # fmt: skip
 
 
-def _fill(found: dict[str, Any], index: Array, designs: DesignRows, states: States, wheel: bool) -> None:
+def _fill(rows: dict[str, Any], index: Array, designs: DesignRows, states: States, wheel: bool) -> None:
     """The results of some designs."""
-    main = main_of(states, designs.size)
-    there = np.flatnonzero(main >= 0)
-    rows, into = main[there], index[there]
-    found["theta"][index] = designs.theta(np.linspace(0.0, designs.period, found["theta"].shape[1])[None])
-    found["flywheel_inertia"][index] = np.where((main < 0) & wheel, np.nan, designs.J)
-    found["status"][index], found["status"][into] = 1, 0
-    found["message"][into] = "ok"
-    for k in np.flatnonzero(main < 0).tolist():
-        found["message"][index[k]] = why_none(designs, states, k)
-    for row in np.argsort(-np.abs(states.figures.values.get("omega_mean", np.empty(0))), kind="stable"):
+    best = states.fastest()
+    there = np.flatnonzero(best >= 0)
+    into = index[there]
+    rows["theta"][index] = designs.theta(np.linspace(0.0, designs.period, rows["theta"].shape[1])[None])
+    rows["flywheel_inertia"][index] = np.where((best < 0) & wheel, np.nan, designs.J)
+    rows["status"][index], rows["status"][into], rows["message"][into] = 1, 0, "ok"
+    for k in np.flatnonzero(best < 0).tolist():
+        rows["message"][index[k]] = why_none(designs, states, k)
+    for row in np.argsort(-np.abs(states.figures["omega_mean"]), kind="stable") if len(states.design) else ():
         k = states.design[row]
-        if row != main[k]:
-            found["others"][index[k]].append(_other(states, row, float(designs.J[k])))
+        if row != best[k]:
+            rows["others"][index[k]].append(_other(_motion(states, row), float(designs.J[k])))
     if not len(there):
         return
-    for name, values in (*states.course.items(), *states.figures.values.items()):
-        found[name][into] = values[rows]
-    gradient = {key: {p: v[rows] for p, v in by.items()} for key, by in states.figures.gradient.items()}
+    motion = _motion(states, best[there])
+    gradient = motion.pop("gradient")
     if wheel:
         gradient["flywheel_inertia"] = _of_wheel(gradient["fluctuation"], designs.J[there])
+    for name in (*COURSE, *NUMBERS, "stable"):
+        rows[name][into] = motion[name]
     for key, by in gradient.items():
-        own = found["gradient"].setdefault(key, {})
+        whole = rows["gradient"].setdefault(key, {})
         for p, slopes in by.items():
-            own.setdefault(p, np.full(len(found["status"]), np.nan))[into] = slopes
+            whole.setdefault(p, np.full(len(rows["status"]), np.nan))[into] = slopes
 
 
-def _other(states: States, row: int, J: float) -> dict[str, Any]:
+def _motion(states: States, row: Any) -> dict[str, Any]:
+    """The figures of motions, their gradient as a dict of dicts."""
+    figures: dict[str, Any] = {"gradient": {key: {} for key in KEYS}}
+    for key, values in states.figures.items():
+        into, name = (figures["gradient"][key[0]], key[1]) if isinstance(key, tuple) else (figures, key)
+        into[name] = values[row]
+    return figures
+
+
+def _other(motion: dict[str, Any], J: float) -> dict[str, Any]:
     """A periodic motion that is not the one of its design."""
-    figures, jams = states.figures, bool(states.jams[row])
+    jams = motion["jams"]
     return {
-        **{name: states.course[name][row] for name in COURSE},
-        **{name: v[row].item() for name, v in figures.values.items()},
-        "gradient": {key: {p: float(v[row]) for p, v in by.items()} for key, by in figures.gradient.items()},
-        "flywheel_inertia": J, "others": [], "status": 1 if jams else 0,
-        "message": "the guide jams, friction leaves no balance of forces" if jams else "ok",
+        **_mapped({n: motion[n] for n in (*COURSE, *NUMBERS, "stable", "gradient")}, _plain),
+        "flywheel_inertia": J, "others": [], "status": int(jams), "message": JAMS if jams else "ok",
     }  # fmt: skip
 
 
 def _of_wheel(by: Mapping[str, Array], J: Array) -> dict[str, Array]:
     """The derivatives of the flywheel that keeps a fluctuation, from those of the fluctuation."""
-    own = by["flywheel_inertia"]
-    slopes = {p: np.where(J > 0.0, -v / own, 0.0) for p, v in by.items() if p != "flywheel_inertia"}
-    return {**slopes, "fluctuation": np.where(J > 0.0, 1.0 / own, 0.0)}
+    steep = by["flywheel_inertia"]
+    slopes = {p: np.where(J > 0.0, -v / steep, 0.0) for p, v in by.items() if p != "flywheel_inertia"}
+    return {**slopes, "fluctuation": np.where(J > 0.0, 1.0 / steep, 0.0)}
 
 
-def _shaped(values: Any, shape: tuple[int, ...]) -> Any:
-    """Rows in the shape of the designs."""
-    if isinstance(values, dict):
-        return {name: _shaped(value, shape) for name, value in values.items()}
-    return values.reshape(*shape, *values.shape[1:])
+def _mapped(values: Any, function: Callable[[Any], Any]) -> Any:
+    """A mapping of mappings of arrays with a function of each array."""
+    return {n: _mapped(v, function) if isinstance(v, dict) else function(v) for n, v in values.items()}
 
 
-def _first(values: Any) -> Any:
-    """The only row, as plain numbers and arrays."""
-    if isinstance(values, dict):
-        return {name: _first(value) for name, value in values.items()}
-    return values[0].item() if values.dtype != object and values.ndim == 1 else values[0]
+def _plain(value: Any) -> Any:
+    """A NumPy number as one of Python; arrays as they are."""
+    return value.item() if isinstance(value, np.generic) else value

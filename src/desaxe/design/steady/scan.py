@@ -7,7 +7,6 @@ points could hide. Steps that leave too much error, or in which the crank would 
 twice at first, and as often as it takes for a design that would have no stable motion.
 """
 
-from copy import copy
 from math import sqrt
 from typing import Any, NamedTuple
 
@@ -15,9 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...support.panels import TO_COEFFICIENTS, Panels
-from .designs import INSIDE, Coefficients, DesignRows, course_of, picked, rate
+from .designs import Course, DesignRows, course_at, course_of, picked, rate
 
 Array = NDArray[Any]
+BALANCED = 1e-7  # of the work of the loads over a period, of either sign: what of it counts as none
 ROUNDS = 4  # of putting starts between others
 CLOSE = 1e-4  # of an energy: nearer to each other no two starts are told apart
 SPLIT = 6  # starts put into an interval
@@ -38,6 +38,7 @@ SLOPES = np.linalg.inv(RADAU)  # of the stages, from their changes
 # The slope at the start, extrapolated from those of the stages: what it misses is the error.
 EXTRAPOLATED = np.linalg.solve(np.vander(STAGES, increasing=True).T, [1.0, 0.0, 0.0])
 GAMMA = 0.25
+INSIDE = 1e-5  # of a panel: so far from its ends a value belongs to it
 PLACES = np.concatenate([[INSIDE], STAGES[:2], [1.0 - INSIDE]])  # of a step
 NEWTON, SETTLED = 7, 1e-3  # steps of Newton's method, and the last one, of the energy
 SHRINK = 0.1  # of the energy: what a step of Newton's method leaves of it at least
@@ -45,84 +46,75 @@ ERROR = 3e-2  # of the energy: in a step
 PARTS, SHALLOW, DEEP = 4, 2, 8  # of a step with too much error, and how often they are cut again
 
 
-class Turns:
-    """The turns of designs from any energies: the gain over a period, NaN where the crank stops."""
+class Turns(NamedTuple):
+    """The turns of designs from any energies, on panels.
 
-    def __init__(self, designs: DesignRows, edges: Array) -> None:
-        self.designs = designs
-        self.edges, self.course = _resolved(designs, edges)
-        x = self.edges[:, :-1, None] + np.diff(self.edges)[..., None] * PLACES
-        self.whole = _course_at(self.designs, self.edges, self.course, x)
-        inertia = np.where(np.isfinite(self.course.inertia), self.course.inertia, 0.0)
-        self.mean_inertia = Panels(self.edges).integral(inertia) / designs.period
+    course, whole   coefficients at the nodes and at PLACES; inertia: its mean
+    """
 
-    def rows(self, index: Array) -> "Turns":
-        """The turns of some of the designs, or of one several times."""
-        turns = copy(self)
-        turns.designs, turns.edges = self.designs.rows(index), self.edges[index]
-        turns.course, turns.whole = picked(self.course, index), picked(self.whole, index)
-        turns.mean_inertia = self.mean_inertia[index]
-        return turns
+    designs: DesignRows
+    edges: Array
+    course: Course
+    whole: Course
+    inertia: Array
 
-    def gain(self, E0: Array, cuts: int = SHALLOW) -> Array:
-        """The gain of each start (designs, starts)."""
-        W = np.zeros_like(E0)
+    def walk(self, E0: Array, cuts: int = SHALLOW, parts: int = 1) -> list[Array]:
+        """The energy gained up to each end of equal parts of panels, NaN where the crank stops.
+
+        E0   of each start (designs, starts)
+        """
+        gained = [np.zeros_like(E0)]
         with np.errstate(all="ignore"):
             for panel in range(self.edges.shape[1] - 1):
-                start, end = self.edges[:, panel, None], self.edges[:, panel + 1, None]
-                W = W + self._change(
-                    panel, start, end - start, E0 + W, cuts, self.whole.some(np.s_[:, panel])
-                )
-        return W
+                at = np.s_[:, panel : panel + 1]
+                lanes = Lanes(self.designs, self.edges[:, panel : panel + 2], picked(self.course, at))
+                whole = picked(self.whole, np.s_[:, panel]) if parts == 1 else None
+                x, h = lanes.edges[:, :1], np.diff(lanes.edges) / parts
+                for k in range(parts):
+                    gained.append(gained[-1] + lanes.change(x + k * h, h, E0 + gained[-1], cuts, whole))
+        return gained
+
+    def gain(self, E0: Array, cuts: int = SHALLOW) -> Array:
+        """The energy gained over a period."""
+        return self.walk(E0, cuts)[-1]
 
     def path(self, E0: Array, cuts: int = SHALLOW) -> Array:
         """The energy that one start of each design has gained at edges and middles of panels."""
-        gained = [np.zeros((len(E0), 1))]
-        with np.errstate(all="ignore"):
-            for panel in range(self.edges.shape[1] - 1):
-                start, end = self.edges[:, panel, None], self.edges[:, panel + 1, None]
-                h = 0.5 * (end - start)
-                for x in (start, start + h):
-                    E = E0[:, None] + gained[-1]
-                    gained.append(gained[-1] + self._change(panel, x, h, E, cuts))
-        return np.concatenate(gained, axis=1)
+        return np.concatenate(self.walk(E0[:, None], cuts, 2), axis=1)
 
-    def _change(
-        self, panel: int, x: Array, h: Array, E: Array, cuts: int, course: Coefficients | None = None
-    ) -> Array:
+
+class Lanes(NamedTuple):
+    """Designs on one panel of each, and the coefficients at its nodes."""
+
+    designs: DesignRows
+    edges: Array
+    course: Course
+
+    def change(self, x: Array, h: Array, E: Array, cuts: int, course: Course | None = None) -> Array:
         """The change of E in a step after x, NaN where the crank stops; cut into parts where it fails."""
-        if course is None:
-            own = self.course.some(np.s_[:, panel : panel + 1])
-            course = _course_at(self.designs, self.edges[:, panel : panel + 2], own, x + h * PLACES)
-        change, exact, there = self._step(course, h, E)
+        course = course or course_at(self.designs, self.edges, self.course, x + h * PLACES)
+        change, exact, there = self.step(course, h, E)
         bad = ~exact & (E > 0.0) & (h > 0.0)
         if not cuts:
             return np.where(bad & ~there, np.nan, change)
-        if not bad.any():
-            return change
         rows, at = np.nonzero(bad)
-        lanes = self._of_panel(panel).rows(rows)
+        if not len(rows):
+            return change
+        lanes: Lanes = picked(self, rows)
         part, start, W = h[rows] / PARTS, E[rows, at][:, None], np.zeros((len(rows), 1))
         for k in range(PARTS):
-            W = W + lanes._change(0, x[rows] + k * part, part, start + W, cuts - 1)
+            W = W + lanes.change(x[rows] + k * part, part, start + W, cuts - 1)
         change[rows, at] = W[:, 0]
         return change
 
-    def _of_panel(self, panel: int) -> "Turns":
-        turns, at = copy(self), np.s_[:, panel : panel + 1]
-        turns.edges, turns.course = self.edges[:, panel : panel + 2], self.course.some(at)
-        turns.whole = self.whole.some(at)
-        return turns
-
-    def _step(self, course: Coefficients, h: Array, E: Array) -> tuple[Array, Array, Array]:
+    def step(self, course: Course, h: Array, E: Array) -> tuple[Array, Array, Array]:
         """The change of E in a step; whether that is exact enough; whether there is one at all."""
-        source, row, h, E = self.designs.source, self.designs.row(3), h[..., None], E[..., None]
-        course = course.some(np.s_[:, None])._replace(way=np.reshape(course.way, (-1, 1, 1)))
-        first = rate(course.some(np.s_[..., :1]), source, row, E)
-        course, c = course.some(np.s_[..., 1:]), h * STAGES
+        h, E, stages = h[..., None], E[..., None], picked(course, np.s_[:, None, 1:])
+        first = rate(self.designs, picked(course, np.s_[:, None, :1]), E)
+        c = h * STAGES
         Z = np.maximum(c * first.f / (1.0 - c * np.minimum(first.g, 0.0)), (SHRINK - 1.0) * E)
         for _ in range(NEWTON):
-            here = rate(course, source, row, E + Z)
+            here = rate(self.designs, stages, E + Z)
             step = _solved(h * here.g, Z @ SLOPES.T - h * here.f)
             Z = np.maximum(Z - step, SHRINK * (E + Z) - E)
             moved = (np.abs(step) / (E + Z)).max(-1)
@@ -134,27 +126,21 @@ class Turns:
         return Z[..., -1], there & (error <= ERROR * (E[..., 0] + Z[..., -1])), there
 
 
-def _course_at(designs: DesignRows, edges: Array, course: Coefficients, x: Array) -> Coefficients:
-    """The coefficients at any places within the edges, from those at nodes."""
-    read = Panels(edges).reader(x)
-    guide = None if course.guide is None else tuple(map(read, course.guide))
-    three = read(course.inertia), read(course.slope), read(course.load)
-    follow = tuple(one.read(read, designs.theta(x)) for one in course.follow)
-    return Coefficients(designs.theta(x), course.way, *three, guide, follow)
-
-
-def _resolved(designs: DesignRows, edges: Array) -> tuple[Array, Coefficients]:
-    """Edges of panels on which inertia and loads are nearly polynomials, and their coefficients there."""
+def turns_of(designs: DesignRows, edges: Array) -> Turns:
+    """Turns on panels on which inertia and loads are nearly polynomials."""
     while True:
         mesh = Panels(edges)
         course = course_of(designs, mesh.x)
         with np.errstate(all="ignore"):
-            bad = _tail(np.log(course.inertia)) > BENT
-            bad |= _tail(course.load) > BENT * np.abs(course.load).max((1, 2))[:, None]
+            bad = _tail(np.log(course["inertia"])) > BENT
+            bad |= _tail(course["load"]) > BENT * np.abs(course["load"]).max((1, 2))[:, None]
         bad &= 2.0 * mesh.half[..., 0] > NARROWEST
         if not bad.any():
-            return edges, course
+            break
         edges = mesh.refined(bad, edges)
+    x = edges[:, :-1, None] + np.diff(edges)[..., None] * PLACES
+    inertia = mesh.integral(np.nan_to_num(course["inertia"], posinf=0.0)) / designs.period
+    return Turns(designs, edges, course, course_at(designs, edges, course, x), inertia)
 
 
 def _tail(values: Array) -> Array:
@@ -192,26 +178,19 @@ class Scan(NamedTuple):
     starts: Array
     gains: Array
 
-    def found(self) -> Brackets:
-        """The brackets in which gains fall through 0: of stable motions."""
-        return self._changes(1.0)
-
-    def rises(self) -> Brackets:
-        """The brackets in which they rise through 0: of unstable motions."""
-        return self._changes(-1.0)
-
-    def _changes(self, before: float) -> Brackets:
+    def brackets(self, sign: float = 1.0) -> Brackets:
+        """The brackets in which gains fall through 0, of stable motions; rise (sign -1), of others."""
         with np.errstate(invalid="ignore"):
-            sign = before * np.sign(self.gains)
-            design, at = np.nonzero((sign[:, :-1] > 0.0) & (sign[:, 1:] < 0.0))
+            signs = sign * np.sign(self.gains)
+            design, at = np.nonzero((signs[:, :-1] > 0.0) & (signs[:, 1:] < 0.0))
         low, high = self.starts[design, at], self.starts[design, at + 1]
         below, above = self.gains[design, at], self.gains[design, at + 1]
         return Brackets(design, low + (high - low) * below / (below - above), low, high)
 
 
-def scan(designs: DesignRows, edges: Array) -> Scan:
+def scan(designs: DesignRows) -> Scan:
     """The gains of all starts that are needed to see every change of sign."""
-    turns = Turns(designs, edges)
+    turns = turns_of(designs, designs.edges())
     starts = _starts(turns)
     gains = turns.gain(starts)
     for _ in range(ROUNDS):
@@ -220,30 +199,29 @@ def scan(designs: DesignRows, edges: Array) -> Scan:
         if not len(rows):
             break
         more = _between(starts[rows], score[rows])
-        gained = turns.rows(rows).gain(more)
-        extra, extra_gain = (np.full((len(starts), more.shape[1]), np.nan) for _ in range(2))
-        extra[rows], extra_gain[rows] = more, gained
-        starts, gains = np.concatenate([starts, extra], 1), np.concatenate([gains, extra_gain], 1)
-        order = np.argsort(starts, axis=1)
-        starts, gains = np.take_along_axis(starts, order, 1), np.take_along_axis(gains, order, 1)
-    none = np.setdiff1d(np.arange(designs.size), Scan(turns, starts, gains).found().design)
+        extra = np.full((2, len(starts), more.shape[1]), np.nan)
+        extra[:, rows] = more, picked(turns, rows).gain(more)
+        both = np.concatenate([np.stack([starts, gains]), extra], axis=2)
+        starts, gains = np.take_along_axis(both, np.argsort(both[:1], axis=2), axis=2)
+    least = BALANCED * Panels(turns.edges).integral(np.abs(turns.course["load"]))[:, None]
+    gains[np.abs(gains) <= least] = 0.0
+    none = np.setdiff1d(np.arange(designs.size), Scan(turns, starts, gains).brackets().design)
     if len(none):
-        gains[none] = turns.rows(none).gain(starts[none], cuts=DEEP)
+        deep = picked(turns, none).gain(starts[none], cuts=DEEP)
+        gains[none] = np.where(np.abs(deep) <= least[none], 0.0, deep)
     return Scan(turns, starts, gains)
 
 
 def _starts(turns: Turns) -> Array:
     """The energies of the motor's speeds: in the mean, and of a light crank at the start, too."""
-    designs = turns.designs
+    designs, mean = turns.designs, turns.inertia[:, None]
     speeds = np.maximum(designs.source.speeds(designs.motor) * designs.way[:, None], 0.0)
     first = designs.values(["M_eff"], turns.edges[:, :1])["M_eff"] + designs.J[:, None]
-    light = first < LIGHT * turns.mean_inertia[:, None]
     with np.errstate(over="ignore", invalid="ignore"):
-        every = [0.5 * turns.mean_inertia[:, None] * speeds**2]
-        if light.any():
-            every.append(np.where(light, 0.5 * first * speeds**2, np.nan))
-    starts = np.sort(np.concatenate(every, axis=1), axis=1)
-    return np.where(starts > 0.0, starts, np.nan)
+        every = [0.5 * mean * speeds**2, np.where(first < LIGHT * mean, 0.5 * first * speeds**2, np.nan)]
+    starts = np.concatenate(every, axis=1)
+    starts = np.sort(np.where(starts > 0.0, starts, np.nan), axis=1)
+    return np.append(np.full_like(first, np.nan), starts[:, np.isfinite(starts).any(0)], axis=1)
 
 
 def _scores(starts: Array, gains: Array) -> Array:

@@ -1,33 +1,30 @@
 """`steady`: the periodic motion of a machine on its motor, and its derivatives."""
 
-from collections.abc import Mapping
 from math import lcm
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...evaluation.arrays import are_good, as_array, broadcast_shape
-from ...evaluation.under_loads.loaded import loads_of
-from ...loads.along_motion import with_derivatives
 from ...loads.angles import turns_of
 from ...mechanism.inputs import INPUTS, Input
 from ...mechanism.keywords import check_inputs, with_known_keywords
 from ...mechanism.messages import named
 from ...mechanism.names import LENGTHS
 from ...mechanism.read import read_array
-from ...runtime.request import as_number, check_common, check_sliders
+from ...runtime.request import check_common, check_sliders
 from ...support.shown import shown
+from ..turn.cycle import MOST_TURNS
+from ..turn.rows import input_rows
 from .designs import DesignRows
 from .inertia import with_flywheels
 from .result import Steady, result_of
-from .source import TorqueSource, source_of
+from .source import source_of
 from .states import states_of
 
 Array = NDArray[Any]
 OWN = ("torque", "flywheel_inertia", "fluctuation", "branch")
 SPEEDS = ("omega0", "omega", "alpha")
-MOST_TURNS = 4  # after which loads repeat; two in a four-stroke engine
 CHUNK = 1000  # designs at once
 FLYWHEEL = Input("flywheel_inertia", "kg*m^2", "", 0.0, "a finite moment of inertia >= 0")
 FLUCTUATION = Input("fluctuation", "1", "", 1e-9, "a number above 0, at least 1e-9, and below 2")
@@ -84,22 +81,46 @@ def steady(
         >>> [round(found[name], 3) for name in ("omega_mean", "fluctuation", "power_mean")]
         [13.09, 0.015, 0.013]
     """
-    source = source_of(torque)
-    shape, designs, bad = _designs(source, flywheel_inertia, fluctuation, branch, inputs, sliders)
-    wanted = None if fluctuation is None else _flat(_row(FLUCTUATION, fluctuation), shape)
-    if wanted is not None and (not np.isfinite(wanted).all() or (wanted >= 2.0).any()):
-        raise ValueError(f"fluctuation = {shown(fluctuation)}: it must be {FLUCTUATION.limit}")
-    good = np.flatnonzero(~bad)
-    parts = []
+    source, J = source_of(torque), _row(FLYWHEEL, flywheel_inertia)
+    more = {name: np.asarray(value, float) for name, value in source.numbers.items()}
+    more["flywheel_inertia"] = J
+    if fluctuation is not None:
+        more["fluctuation"] = _row(FLUCTUATION, fluctuation)
+        if J.any():
+            rule = ": give one of them; a flywheel that stays is a part of I_crank"
+            wheel = named("flywheel_inertia", flywheel_inertia)
+            raise ValueError(wheel + f", fluctuation = {shown(fluctuation)}" + rule)
+        if (more["fluctuation"] >= 2.0).any():
+            raise ValueError(f"fluctuation = {shown(fluctuation)}: it must be {FLUCTUATION.limit}")
+    given, turn = _of_sliders(sliders, {n: v for n, v in inputs.items() if v is not None})
+    check_inputs("steady", given, [*OWN, *(n for n in INPUTS if n != "theta")])
+    check_common(given, branch)
+    if np.any(np.asarray(given.pop("alpha", 0.0), float)):
+        raise ValueError("alpha: steady finds the speed over a turn itself; leave it out")
+    rows = input_rows("steady", given, more, LENGTHS if turn is None else ())
+    speeds = [rows.numbers.pop(name) for name in ("omega", "omega0") if name in rows.numbers]
+    way = (
+        np.where(np.asarray(speeds[0] if speeds else 1.0) < 0.0, -1.0, 1.0)
+        if source.way is None
+        else source.way
+    )
+    turning = {**rows.loads, **({} if source.load is None else {"torque": source.load})}
+    turns = lcm(turns_of("steady", turning, MOST_TURNS), 1 if turn is None else turn.turns)
+    motor = {name: rows.more[name] for name in source.numbers}
+    designs = DesignRows(
+        rows.size, rows.numbers, rows.loads, int(branch), source, motor,
+        rows.each(rows.more["flywheel_inertia"]), rows.each(np.broadcast_to(way, rows.shape).reshape(-1)),
+        turns, turn,
+    )  # fmt: skip
+    good, parts = np.flatnonzero(~rows.bad), []
     for first in range(0, max(len(good), 1), CHUNK):
         index = good[first : first + CHUNK]
         part = designs.rows(index)
-        if wanted is not None:
-            part = with_flywheels(part, wanted[index])
-        parts.append((index, part, states_of(part), wanted is not None))
-    made_of = {**designs.numbers, **designs.loads, **({} if sliders is None else {"sliders": sliders})}
-    about = {"inputs": made_of, "torque": torque, "branch": int(branch)}
-    return result_of(shape, parts, about)
+        if fluctuation is not None:
+            part = with_flywheels(part, rows.each(rows.more["fluctuation"])[index])
+        parts.append((index, part, states_of(part), fluctuation is not None))
+    made_of = {**rows.numbers, **rows.loads, **({} if sliders is None else {"sliders": sliders})}
+    return result_of(rows.shape, parts, {"inputs": made_of, "torque": torque, "branch": int(branch)})
 
 
 def _row(row: Input, value: Any) -> Array:
@@ -112,87 +133,14 @@ def _row(row: Input, value: Any) -> Array:
     return array
 
 
-def _flat(array: Array, shape: tuple[int, ...]) -> Array:
-    return np.broadcast_to(array, shape).reshape(-1)
-
-
-def _designs(
-    source: TorqueSource,
-    flywheel: Any,
-    fluctuation: Any,
-    branch: int,
-    inputs: Mapping[str, Any],
-    sliders: Any,
-) -> tuple[tuple[int, ...], DesignRows, NDArray[np.bool_]]:
-    """The shape of the designs, these in rows, and which of them have a bad input."""
-    given = {name: value for name, value in inputs.items() if value is not None}
+def _of_sliders(sliders: Any, given: dict[str, Any]) -> tuple[dict[str, Any], Any]:
+    """The inputs, and the turn of several sliders, which has all of them but the speed."""
     check_sliders(sliders)
-    turn = (
-        None
-        if sliders is None
-        else sliders.turn("steady", {n: v for n, v in given.items() if n not in SPEEDS})
-    )
-    given = given if turn is None else {n: v for n, v in given.items() if n in SPEEDS}
-    if turn is not None and turn.has_friction:
+    if sliders is None:
+        return given, None
+    turn = sliders.turn("steady", {n: v for n, v in given.items() if n not in SPEEDS})
+    if turn.has_friction:
         raise ValueError("steady: of several sliders without friction, mu = 0")
-    if turn is not None and turn.sliders.follows_speed:
+    if turn.sliders.follows_speed:
         raise ValueError("steady: loads of several sliders must not depend on the speed")
-    check_inputs("steady", given, [*OWN, *(n for n in INPUTS if n != "theta")])
-    check_common(given, branch)
-    numbers, loads = loads_of(given)
-    if np.any(np.asarray(numbers.pop("alpha", 0.0), float)):
-        raise ValueError("alpha: steady finds the speed over a turn itself; leave it out")
-    for name in LENGTHS:
-        if turn is None and name not in numbers:
-            as_number(name, None, LENGTHS, ("steady",))
-    arrays = {name: as_array(name, value, LENGTHS, ("steady",)) for name, value in numbers.items()}
-    speed = arrays.pop("omega0", None)
-    speed = arrays.pop("omega", speed)
-    loads = with_derivatives(loads, {**arrays, "omega": 1.0 if speed is None else speed})
-    motor = {name: np.asarray(value, float) for name, value in source.numbers.items()}
-    J = _row(FLYWHEEL, flywheel)
-    extra = {"flywheel_inertia": J}
-    if fluctuation is not None and J.any():
-        rule = "give one of them; a flywheel that stays is a part of I_crank"
-        wheel = named("flywheel_inertia", flywheel)
-        raise ValueError(wheel + f", fluctuation = {shown(fluctuation)}: {rule}")
-    if fluctuation is not None:
-        extra["fluctuation"] = read_array(FLUCTUATION, fluctuation)
-    if speed is not None and source.way is None:
-        extra["omega0"] = speed
-    shape = broadcast_shape({**arrays, **motor, **extra})
-    empty = next((n for n, a in {**arrays, **motor, **extra}.items() if not a.size), None)
-    if empty is not None:
-        raise ValueError(f"{empty}: an empty array; expected at least one design")
-    way = (
-        source.way if source.way is not None else (1.0 if speed is None else np.where(speed < 0.0, -1.0, 1.0))
-    )
-    count = int(np.prod(shape))
-
-    def rows(values: Mapping[str, Array]) -> dict[str, Any]:
-        return {n: _flat(v, shape) if v.ndim else v.item() for n, v in values.items()}
-
-    turning: dict[str, Any] = dict(loads)
-    if source.load is not None:
-        turning["torque"] = source.load
-    designs = DesignRows(
-        count, rows(arrays), loads, int(branch), source, rows(motor), _flat(J, shape),
-        _flat(np.asarray(way, float), shape), _turns(turning, turn), turn,
-    )  # fmt: skip
-    return shape, designs, _bad(designs)
-
-
-def _turns(loads: Mapping[str, Any], turn: Any) -> int:
-    """After how many turns everything repeats."""
-    turns = turns_of("steady", loads, MOST_TURNS)
-    return turns if turn is None else lcm(turns, turn.turns)
-
-
-def _bad(designs: DesignRows) -> NDArray[np.bool_]:
-    """True for designs with a bad input."""
-    bad = np.zeros(designs.size, bool)
-    for name, value in designs.numbers.items():
-        bad |= ~are_good(name, np.asarray(value))
-    for value in designs.motor.values():
-        bad |= ~np.isfinite(value)
-    return bad
+    return {n: v for n, v in given.items() if n in SPEEDS}, turn

@@ -1,13 +1,10 @@
 """`crossings`: the angles at which a quantity passes through a value, and its share of the cycle above it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...evaluation.arrays import are_good, as_array, broadcast_shape
-from ...evaluation.under_loads.loaded import loads_of
-from ...loads.along_motion import with_derivatives
 from ...loads.angles import turns_of
 from ...mechanism.catalogue import has, quantity
 from ...mechanism.closed.limits import margin_of
@@ -17,10 +14,11 @@ from ...mechanism.names import LENGTHS, sensitivity
 from ...mechanism.quantity_units import slopes_of, unit_of
 from ...mechanism.read import read_array
 from ...mechanism.status import CrossingStatus
-from ...runtime.request import as_number, check_common, is_steady
+from ...runtime.request import check_common, is_steady
 from ...support.answer import Answer
 from ...support.panels import Array, Panels
 from .cycle import MOST_TURNS, Cycle
+from .rows import input_rows
 
 TOGETHER = 3e-8  # rad: crossings that are nearer are one, or a tangency
 EQUAL = 1e-14  # of the largest value: a difference that is none
@@ -77,33 +75,23 @@ def crossings(name: str, *, value: Any = 0.0, branch: int = 1, **inputs: Any) ->
         raise TypeError("crossings: theta is the answer; the cycle is that of crank and loads")
     if inputs.get("omega") is None and not is_steady(inputs.get("alpha", 0.0)):
         raise TypeError("crossings: alpha: no turn repeats the one before; give the state, omega and alpha")
-    numbers, loads = loads_of({key: v for key, v in inputs.items() if v is not None})
-    for length in LENGTHS:
-        if length not in numbers:
-            as_number(length, None, LENGTHS, ("crossings",))
-    designs = {key: as_array(key, v, LENGTHS, ("crossings",)) for key, v in numbers.items()}
-    loads = with_derivatives(loads, designs)
-    arrays = {**designs, "value": read_array(row, value)}
-    shape = broadcast_shape(arrays)
-    flat = {key: np.broadcast_to(v, shape).reshape(-1) for key, v in arrays.items()}
-    level = flat.pop("value")
-    turns = turns_of("crossings", loads, MOST_TURNS)
-    status = _status(flat, level)
-    found = [NONE] * level.size
+    rows = input_rows("crossings", inputs, {"value": read_array(row, value)})
+    status = np.where(
+        rows.bad, CrossingStatus.BAD_INPUT, _status(*(rows.each(rows.numbers[n]) for n in LENGTHS))
+    )
+    numbers, level = {n: rows.each(v) for n, v in rows.numbers.items()}, rows.each(rows.more["value"])
+    cycle = Cycle(numbers, rows.loads, branch, turns_of("crossings", rows.loads, MOST_TURNS))
+    found = [NONE] * rows.size
     for k in np.flatnonzero(status == 0).tolist():
-        cycle = Cycle({p: v[k : k + 1] for p, v in flat.items()}, loads, branch, turns)
-        found[k], status[k] = _of_one(cycle, name, float(level[k]))
-    return _answer(name, found, status, shape, flat, loads, branch, turns)
+        found[k], status[k] = _of_one(cycle.part([k]), name, float(level[k]))
+    return _answer(name, found, status, rows.shape, cycle)
 
 
-def _status(designs: Mapping[str, Array], level: Array) -> Array:
+def _status(ec: Array, AB: Array, BC: Array) -> Array:
     """Why designs have no crossings; 0 for those that may."""
-    bad = ~np.isfinite(level)
-    for name, array in designs.items():
-        bad |= ~are_good(name, array)
-    margin = margin_of(*(designs[name] for name in LENGTHS))
-    codes = CrossingStatus.BAD_INPUT, CrossingStatus.CANNOT_TURN, CrossingStatus.CHANGE_POINT
-    return np.select([bad, margin < 0.0, margin == 0.0], codes, 0).astype(np.int8)
+    margin = margin_of(ec, AB, BC)
+    codes = CrossingStatus.CANNOT_TURN, CrossingStatus.CHANGE_POINT
+    return np.select([margin < 0.0, margin == 0.0], codes, 0).astype(np.int8)
 
 
 def _of_one(cycle: Cycle, name: str, level: float) -> tuple[Crossings, int]:
@@ -165,27 +153,19 @@ def _has_slope(cycle: Cycle, along: str) -> bool:
 
 
 def _answer(
-    name: str,
-    found: Sequence[Crossings],
-    status: Array,
-    shape: tuple[int, ...],
-    designs: Mapping[str, Array],
-    loads: Mapping[str, Any],
-    branch: int,
-    turns: int,
+    name: str, found: Sequence[Crossings], status: Array, shape: tuple[int, ...], cycle: Cycle
 ) -> Answer:
     most = max((one.theta.size for one in found), default=0)
     columns = {key: np.full((len(found), most), np.nan) for key in ("theta", "rising", "side")}
     for k, one in enumerate(found):
         for key, column in columns.items():
             column[k, : one.theta.size] = getattr(one, key)
-    rows = Cycle(designs, loads, branch, turns)
-    gradient = _gradient(rows, name, columns["theta"], columns["side"])
+    gradient = _gradient(cycle, name, columns["theta"], columns["side"])
     result: dict[str, Any] = {key: column.reshape(*shape, most) for key, column in columns.items()}
-    numbers: dict[str, Any] = {"count": [c.theta.size for c in found], "share": [c.share for c in found]}
-    for key, of_designs in {**numbers, "status": status}.items():
-        result[key] = np.reshape(of_designs, shape) if shape else of_designs[0]
-    result["status"] = result["status"] if shape else int(status[0])
+    counts, shares = [one.theta.size for one in found], [one.share for one in found]
+    for key, of_designs in {"count": counts, "share": shares, "status": status}.items():
+        numbers = np.asarray(of_designs)
+        result[key] = numbers.reshape(shape) if shape else numbers[0].item()
     result["gradient"] = {p: slope.reshape(*shape, most) for p, slope in gradient.items()}
     units = {"theta": unit_of("theta"), "gradient": slopes_of("theta", gradient)}
     return Answer(result, units, CrossingStatus)

@@ -50,6 +50,11 @@ class Cycle:
         self.branch, self.turns = int(branch), turns
         self.backwards = backwards
 
+    def part(self, index: Any) -> "Cycle":
+        """Some of the designs."""
+        numbers = {name: value[index] if np.ndim(value) else value for name, value in self.numbers.items()}
+        return Cycle(numbers, self.loads, self.branch, self.turns, self.backwards)
+
     @property
     def angle(self) -> float:
         """The angle of the cycle [rad], > 0."""
