@@ -1,5 +1,6 @@
 """The inputs of the mechanism: what each is, its unit, its limits."""
 
+from collections.abc import Iterator
 from math import inf
 from typing import Generic, NamedTuple, TypedDict, TypeVar
 
@@ -43,77 +44,57 @@ class Inputs(TypedDict, Generic[V], total=False):
 
 
 TINY = 5e-324  # the least number that is more than nothing: a rod of 0 is no rod
-_INERTIA = "a finite moment of inertia >= 0"
+# Sections of a scene with their inputs, in the order in which their names stand; name, unit, meaning, meaning
+# where there is little room, limit. `tests/mechanism/test_inputs.py` has the other places of an input.
+_TABLE = """
+[motion]
+theta | rad | crank angle, from the slider axis | crank angle
+[mechanism]
+ec | m | eccentricity: the slider axis is at X = -ec | eccentricity
+AB | m | crank length | crank | >= 0
+BC | m | length of the connecting rod | connecting rod | > 0
+[motion]
+omega0 | rad/s | angular speed of the crank at theta = 0 | speed
+alpha | rad/s^2 | angular acceleration of the crank, constant | acceleration of the crank
+omega | rad/s | angular speed of the crank at this instant, instead of omega0 | speed at this instant
+[masses]
+m_crank | kg | mass of the crank | mass of the crank | >= 0
+m_rod | kg | mass of the connecting rod | mass of the rod | >= 0
+m_slider | kg | mass of the slider | mass of the slider | >= 0
+I_crank | kg*m^2 | moment of inertia of the crank about its centre of mass | inertia of the crank | >= 0
+I_rod | kg*m^2 | moment of inertia of the rod about its centre of mass | inertia of the rod | >= 0
+r_crank | m | from the crank centre towards the crank pin: the crank's centre of mass | crank's centre of mass
+r_rod | m | from the crank pin towards the slider: the rod's centre of mass | rod's centre of mass
+[loads]
+F_X | N | external force on the slider along X | force on the slider along X
+F_Y | N | external force on the slider along Y | force on the slider along Y
+g_X | m/s^2 | gravity along X
+g_Y | m/s^2 | gravity along Y
+mu | 1 | Coulomb friction coefficient of the slider's guide | friction of the guide | >= 0
+"""
+_NOUNS = {"m": "length", "kg": "mass", "kg*m^2": "moment of inertia"}  # of a limit, by unit
 
-_MASS = "a finite mass >= 0"
+
+def _read(table: str) -> Iterator[Input]:
+    section = ""
+    for line in table.strip().splitlines():
+        if line.startswith("["):
+            section = line.strip("[]")
+            continue
+        name, unit, meaning, brief, bound = [*line.split(" | "), "", ""][:5]
+        least = {">= 0": 0.0, "> 0": TINY}.get(bound)
+        limit = f"a finite {_NOUNS.get(unit, 'number')} {bound}" if bound else "a finite number"
+        yield Input(name, unit, meaning, least, limit, brief or meaning, section)
 
 
-def _in(section: str, *rows: Input) -> dict[str, Input]:
-    return {row.name: row._replace(section=section) for row in rows}
-
-
-# In the order in which their names stand; `tests/mechanism/test_inputs.py` has the other places of an input.
-INPUTS = {
-    **_in("motion", Input("theta", "rad", "crank angle, from the slider axis", brief="crank angle")),
-    **_in(
-        "mechanism",
-        Input("ec", "m", "eccentricity: the slider axis is at X = -ec", brief="eccentricity"),
-        Input("AB", "m", "crank length", 0.0, "a finite length >= 0", "crank"),
-        Input("BC", "m", "length of the connecting rod", TINY, "a finite length > 0", "connecting rod"),
-    ),
-    **_in(
-        "motion",
-        Input("omega0", "rad/s", "angular speed of the crank at theta = 0", brief="speed"),
-        Input(
-            "alpha", "rad/s^2", "angular acceleration of the crank, constant",
-            brief="acceleration of the crank",
-        ),
-        Input(
-            "omega", "rad/s", "angular speed of the crank at this instant, instead of omega0",
-            brief="speed at this instant",
-        ),
-    ),
-    **_in(
-        "masses",
-        Input("m_crank", "kg", "mass of the crank", 0.0, _MASS, "mass of the crank"),
-        Input("m_rod", "kg", "mass of the connecting rod", 0.0, _MASS, "mass of the rod"),
-        Input("m_slider", "kg", "mass of the slider", 0.0, _MASS, "mass of the slider"),
-        Input(
-            "I_crank", "kg*m^2", "moment of inertia of the crank about its centre of mass", 0.0, _INERTIA,
-            "inertia of the crank",
-        ),
-        Input(
-            "I_rod", "kg*m^2", "moment of inertia of the rod about its centre of mass", 0.0, _INERTIA,
-            "inertia of the rod",
-        ),
-        Input(
-            "r_crank", "m", "from the crank centre towards the crank pin: the crank's centre of mass",
-            brief="crank's centre of mass",
-        ),
-        Input(
-            "r_rod", "m", "from the crank pin towards the slider: the rod's centre of mass",
-            brief="rod's centre of mass",
-        ),
-    ),
-    **_in(
-        "loads",
-        Input("F_X", "N", "external force on the slider along X", brief="force on the slider along X"),
-        Input("F_Y", "N", "external force on the slider along Y", brief="force on the slider along Y"),
-        Input("g_X", "m/s^2", "gravity along X", brief="gravity along X"),
-        Input("g_Y", "m/s^2", "gravity along Y", brief="gravity along Y"),
-        Input(
-            "mu", "1", "Coulomb friction coefficient of the slider's guide", 0.0, "a finite number >= 0",
-            "friction of the guide",
-        ),
-    ),
-}  # fmt: skip
+INPUTS = {row.name: row for row in _read(_TABLE)}
 # Of several sliders on one crankshaft; with an index but for the last.
 OF_SHAFTS = {
     "phase": Input("phase", "rad", "lag of a slider's dead centre"),
     "bank": Input("bank", "rad", "angle of a slider's axis"),
     "firing": Input("firing", "rad", "start of the cycle of a slider's load"),
     "position": Input("position", "m", "from the middle of the shaft to a slider"),
-    "I_shaft": Input("I_shaft", "kg*m^2", "moment of inertia of the shaft", 0.0, _INERTIA),
+    "I_shaft": Input("I_shaft", "kg*m^2", "moment of inertia of the shaft", 0.0, INPUTS["I_rod"].limit),
 }
 # Magnitudes between which nothing overflows, nor underflows to a wrong value. The least is that of the rod;
 # what is much smaller vanishes beside it.

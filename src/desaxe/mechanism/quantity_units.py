@@ -22,25 +22,23 @@ from .own import Register, register
 PLAIN = Conversion("1")
 # Units of inputs and results that are no quantities of the catalogue.
 OTHERS = {
-    **dict.fromkeys(("V_outward", "V_inward"), "m/s"),
-    **dict.fromkeys(("theta0", "until", "phase", "firing", "angle", "theta_intervals"), "rad"),
-    **dict.fromkeys(("omega_start", "omega_mean", "synchronous_speed"), "rad/s"),
-    **dict.fromkeys(("t", "t_end", "t_last", "times", "period"), "s"),
-    **dict.fromkeys(
-        (
-            "torque", "torque_mean", "torque_rms", "torque_peak", "starting_torque", "flywheel_torque",
-            "T_motor", "breakdown_torque",
-        ),
-        "N*m",
-    ),
-    **dict.fromkeys(("work", "work_in", "work_out"), "J"),
-    **dict.fromkeys(("power_mean", "power_peak"), "W"),
-    "flywheel_inertia": "kg*m^2",
-    **dict.fromkeys(("C_inertia_X", "C_inertia_Y"), "N*m"),
-    **dict.fromkeys(("breakdown_slip", "gear"), "1"),
-    **dict.fromkeys(("radius", "spacing", "free"), "m"),
-    "mass": "kg",
-    "product": "kg*m",
+    name: unit
+    for unit, names in {
+        "m/s": "V_outward V_inward",
+        "rad": "theta0 until phase firing angle theta_intervals",
+        "rad/s": "omega_start omega_mean synchronous_speed",
+        "s": "t t_end t_last times period",
+        "N*m": "torque torque_mean torque_rms torque_peak starting_torque flywheel_torque "
+        "T_motor breakdown_torque C_inertia_X C_inertia_Y",
+        "J": "work work_in work_out",
+        "W": "power_mean power_peak",
+        "kg*m^2": "flywheel_inertia",
+        "1": "breakdown_slip gear",
+        "m": "radius spacing free",
+        "kg": "mass",
+        "kg*m": "product",
+    }.items()
+    for name in names.split()
 }  # fmt: skip
 # Numbers of a load on the slider: one is the load's unit by those of these quantities; a position is no load.
 OF_LOADS = {"stiffness": ("Y",), "linear": ("V_C",), "quadratic": ("V_C", "V_C"), "free": None}

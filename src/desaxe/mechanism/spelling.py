@@ -4,44 +4,33 @@ from collections.abc import Iterable
 
 from ..support.forks import IMPORTS
 
-# What people call inputs and quantities -> their names here; the first that there is, is meant.
+# Names here, of which the first that there is is meant: what people call them.
 WORDS = {
-    **dict.fromkeys(("eccentricity", "offset", "excentricity", "ecc", "e"), ("ec",)),
-    **dict.fromkeys(("crank", "crank_length", "crank_radius", "radius", "r"), ("AB",)),
-    **dict.fromkeys(("rod", "rod_length", "connecting_rod", "conrod", "coupler", "l"), ("BC",)),
-    **dict.fromkeys(("angle", "crank_angle", "theta"), ("theta", "theta0")),
-    **dict.fromkeys(
-        (
-            "speed",
-            "crank_speed",
-            "angular_speed",
-            "angular_velocity",
-            "rpm",
-            "n",
-            "w",
-            "omega0",
-            "omega_0",
-            "omega",
-        ),
-        ("omega0", "omega_start"),
-    ),
-    "angular_acceleration": ("alpha",),
-    "acceleration": ("a_C", "alpha"),
-    **dict.fromkeys(("velocity", "v"), ("V_C",)),
-    "a": ("a_C", "alpha"),
-    **dict.fromkeys(("jerk", "j"), ("j_C",)),
-    **dict.fromkeys(("position", "displacement", "x"), ("Y",)),
-    **dict.fromkeys(("rod_angle", "beta"), ("phi",)),
-    **dict.fromkeys(("side_force", "normal_force", "guide_force"), ("N_C",)),
-    "power": ("power_in",),
-    **dict.fromkeys(("friction", "friction_coefficient"), ("mu",)),
-    **dict.fromkeys(("crank_mass", "mass_crank"), ("m_crank",)),
-    **dict.fromkeys(("rod_mass", "mass_rod"), ("m_rod",)),
-    **dict.fromkeys(("slider_mass", "mass_slider", "piston_mass", "m_piston", "mass", "m"), ("m_slider",)),
-    **dict.fromkeys(("force", "load"), ("F_Y",)),
-    **dict.fromkeys(("gravity", "g"), ("g_Y",)),
-    **dict.fromkeys(("drive", "moment", "t_in", "torque"), ("torque", "T_in")),
-    **dict.fromkeys(("duration", "time"), ("t_end",)),
+    word: tuple(names.split())
+    for names, words in {
+        "ec": "eccentricity offset excentricity ecc e",
+        "AB": "crank crank_length crank_radius radius r",
+        "BC": "rod rod_length connecting_rod conrod coupler l",
+        "theta theta0": "angle crank_angle theta",
+        "omega0 omega_start": "speed crank_speed angular_speed angular_velocity rpm n w omega0 omega_0 omega",
+        "alpha": "angular_acceleration",
+        "a_C alpha": "acceleration a",
+        "V_C": "velocity v",
+        "j_C": "jerk j",
+        "Y": "position displacement x",
+        "phi": "rod_angle beta",
+        "N_C": "side_force normal_force guide_force",
+        "power_in": "power",
+        "mu": "friction friction_coefficient",
+        "m_crank": "crank_mass mass_crank",
+        "m_rod": "rod_mass mass_rod",
+        "m_slider": "slider_mass mass_slider piston_mass m_piston mass m",
+        "F_Y": "force load",
+        "g_Y": "gravity g",
+        "torque T_in": "drive moment t_in torque",
+        "t_end": "duration time",
+    }.items()
+    for word in words.split()
 }
 
 
