@@ -10,7 +10,7 @@ SI units and radians. Nothing is imported until it is used: one point needs only
 from typing import TYPE_CHECKING, Any
 
 from .support.extras import explained as _explained
-from .support.interrupts import import_whole as _import_whole
+from .support.forks import imported as _imported
 from .support.version import version as _version
 
 if TYPE_CHECKING:
@@ -150,13 +150,13 @@ def __getattr__(name: str) -> Any:
     if name == "__version__":
         return _version()
     if name in MODULES:
-        return _import_whole(MODULES[name])
+        return _imported(MODULES[name])
     if name not in PUBLIC:
         raise AttributeError(f"module 'desaxe' has no attribute {name!r}")
     with _explained(name):
-        value = getattr(_import_whole(PUBLIC[name]), name)
+        value = getattr(_imported(PUBLIC[name]), name)
     if name in WARN_OF_SLIPS:
-        value = _import_whole("desaxe.mechanism.public").warning(value)
+        value = _imported("desaxe.mechanism.public").warning(value)
     globals()[name] = value
     return value
 

@@ -21,8 +21,7 @@ from ..runtime.kernels import key_of
 from ..runtime.native_calls import Bound, bind, point_caller, repair_for, scalar_of, ufunc_of
 from ..runtime.request import Request, as_number, check_common, request, several, standstill
 from ..support.computed import computed_once
-from ..support.forks import IMPORTS
-from ..support.interrupts import import_whole
+from ..support.forks import IMPORTS, imported
 from ..support.shown import shown as as_shown
 
 Array = NDArray[Any]
@@ -209,7 +208,7 @@ class Function:
     @computed_once
     def scalar(self) -> Any:
         """The function of numbers, callable from numba's code: a number for a name, a tuple for a list."""
-        import_whole("numba")
+        imported("numba")
         return scalar_of(self._point.address, self.inputs, len(self.names), self._one, self)
 
     def __reduce__(self) -> Any:

@@ -14,8 +14,8 @@ from ..mechanism.own import Register, register
 from ..mechanism.quantity_units import SI, UnitSystem, unit_of
 from ..mechanism.status import PointStatus
 from ..support.extras import explained
-from ..support.forks import IMPORTS
-from ..support.interrupts import finished, import_whole
+from ..support.forks import IMPORTS, imported
+from ..support.signals import finished
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -107,7 +107,7 @@ def provenance(
 def import_xarray(what: str = "a labelled result") -> Any:
     """The module xarray, with all that it imports itself when it makes its first Dataset."""
     with explained(what):
-        xarray = import_whole("xarray")
+        xarray = imported("xarray")
 
     def make_a_dataset() -> None:
         with IMPORTS:

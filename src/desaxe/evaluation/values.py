@@ -20,8 +20,7 @@ from ..runtime.request import (
     several,
     standstill,
 )
-from ..support.forks import IMPORTS
-from ..support.interrupts import import_whole
+from ..support.forks import IMPORTS, imported
 
 if TYPE_CHECKING:
     from ..loads.load import Load
@@ -138,7 +137,7 @@ _ARRAY: list[type] = [object]  # NumPy's type of array, when it is known
 @cache
 def _evaluate_arrays() -> Callable[..., dict[str, Any]]:
     """`arrays.evaluate_arrays`, imported when the first array comes."""
-    _ARRAY[0] = import_whole("numpy").ndarray
+    _ARRAY[0] = imported("numpy").ndarray
     with IMPORTS:
         from .arrays import evaluate_arrays
 

@@ -13,6 +13,7 @@ from math import nan
 from sys import float_info
 from typing import NamedTuple
 
+from ..compiler.passes.differentiate import Chain
 from ..compiler.passes.slicing import drop_unused
 from ..compiler.program import Argument, Line, Note, Program, TableName, names_in, validate
 from .inputs import INPUTS
@@ -79,11 +80,10 @@ def with_totals(
         writer.load(load, {p for total in totals for _, force, p in total.terms if force == load.force})
     writer.lines += writer.late
     outputs = *(writer.total(total) for total in totals), *others
-    used = dict.fromkeys(a for line in writer.lines for a in names_in(line.args))
     made = {line.name for line in writer.lines}
-    more = [name for name in used if name not in made and name not in program.inputs]
-    inputs = (*(name for name in program.inputs if name not in made), *more)
-    whole = program._replace(inputs=inputs, lines=tuple(writer.lines), outputs=outputs, notes=writer.notes)
+    used = (name for line in writer.lines for name in names_in(line.args) if name not in made)
+    inputs = dict.fromkeys((*(name for name in program.inputs if name not in made), *used))
+    whole = Program(tuple(inputs), tuple(writer.lines), outputs, writer.notes)
     return validate(drop_unused(whole))
 
 
@@ -111,9 +111,9 @@ class _Writer:
     def __init__(self, program: Program, names: Mapping[str, str], way: TurningSense) -> None:
         self.names, self.way = names, way
         self.notes = dict(program.notes)
-        self.types = {line.name: line.type for line in program.lines}
-        self.status: dict[str, tuple[str, str]] = {}  # of a force over the stroke: none, singular
+        self.marks: dict[str, list[tuple[str, str, Argument]]] = {}  # of a force: table, is there, moves
         self.slopes: dict[tuple[str, str], Argument] = {}
+        self.reduced: dict[str, Argument] = {}  # lines of reduced angles, with their derivatives by theta
         changed = set(INPUTS) & {"F_X", "F_Y"}
         self.lines: list[Line] = []
         self.late: list[Line] = []
@@ -129,70 +129,53 @@ class _Writer:
 
     def load(self, load: LoadLines, parameters: set[str]) -> None:
         """The lines of a force and of its derivatives by these parameters."""
-        force = load.force
+        force, start = load.force, len(self.lines)
         if not load.over:
             self.slopes.update({(force, p): f"{force}_by_{p}" for p in parameters})
             return
-        values = [self._look_up(part, parameters) for part in load.parts or (load,)]
-        value = values[0]
-        for number, other in enumerate(values[1:]):
+        value, *others = [self._look_up(part) for part in load.parts or (load,)]
+        for number, other in enumerate(others):
             value = self.new(f"{force}_sum_{number}", "add", value, other)
+        made = [line for line in self.lines[start:] if line.name not in self.reduced]
+        for p in sorted(parameters):
+            self.slopes[force, p] = self._derivative(force, value, p, made)
+        for part in load.parts or (load,):
+            if part.over not in ("theta", "Y", "V_C"):
+                self._mark(force, part, parameters)
         size = self.new(f"{force}_size", "abs", value)
         finite = self.new(f"{force}_is_finite", "le", size, float_info.max, type="bool")
         self.new(force, "select", finite, value, 0.0)  # a point without motion has a status of its own
         self.notes[force] = Note(INPUTS[force].unit, INPUTS[force].meaning)
-        if load.parts:
-            self._add_up(load, parameters)
 
-    def _add_up(self, load: LoadLines, parameters: set[str]) -> None:
-        """The derivatives of a sum, and where it has none: those of its parts."""
-        force = load.force
-        for p in sorted(parameters):
-            slopes = [self.slopes[part.force, p] for part in load.parts if (part.force, p) in self.slopes]
-            total: Argument = 0.0
-            for number, slope in enumerate(slopes):
-                total = self.new(f"{force}_by_{p}_{number}", "add", total, slope)
-            self.slopes[force, p] = total
-        marks = [self.status[part.force] for part in load.parts if part.force in self.status]
-        if marks:
-            there, moves = marks[0]
-            for number, (other, others) in enumerate(marks[1:]):
-                there = self.new(f"{force}_are_there_{number}", "and", there, other, type="bool")
-                moves = self.new(f"{force}_move_{number}", "and", moves, others, type="bool")
-            self.status[force] = there, moves
+    def _derivative(self, force: str, value: str, parameter: str, lines: Sequence[Line]) -> Argument:
+        """The derivative of a force by the chain rule on its lines."""
+        chain = Chain(parameter, prefix=f"{force}_d_")
+        for quantity in ("Y", "V_C", "Y_outer", "Y_inner"):
+            slope = f"{quantity}_wrt_{parameter}"
+            if quantity in self.names and slope in self.names:
+                chain.slopes[self.names[quantity]] = self.names[slope]
+        if parameter == "theta":
+            chain.slopes |= self.reduced
+        for line in lines:
+            chain.through(line)
+        self.lines += chain.lines
+        return chain.slope(value)
 
-    def _look_up(self, load: LoadLines, parameters: set[str]) -> str:
-        """The lines of the value of a table and of its derivatives; the name of the value."""
+    def _look_up(self, load: LoadLines) -> str:
+        """The lines of the value of a table; the name of the value."""
         force, table = load.force, TableName(load.force)
-        parameters = {p for p in parameters if self._depends(load, p)}
         x = self._reduced(load) if load.over == "theta" else self._along(load)
         piece = f"{force}_piece"
         if not load.held:
             way = 1.0 if load.over == "theta" or not load.ways else self._ahead()
             self.new(piece, "lookup_piece", x, table, way)
-        value = self.new(f"{force}_found", "lookup", x, table, piece)
-        slope = self.new(f"{force}_slope", "lookup_slope", x, table, piece) if parameters else ""
-        for p in sorted(parameters):
-            if load.over == "theta":
-                self.slopes[force, p] = slope
-            else:
-                moved = self._moved(load, p)
-                self.slopes[force, p] = self.new(f"{force}_by_{p}", "mul", slope, moved)
-        if load.over not in ("theta", "Y", "V_C"):
-            self._mark(load, parameters)
-        return value
-
-    def _depends(self, load: LoadLines, parameter: str) -> bool:
-        """True if what a table is over depends on a parameter."""
-        if load.over == "theta":
-            return parameter == "theta"
-        return f"{'V_C' if load.over == 'V_C' else 'Y'}_wrt_{parameter}" in self.names
+        return self.new(f"{force}_found", "lookup", x, table, piece)
 
     def _reduced(self, load: LoadLines) -> str:
         """The crank angle in the first period of a table."""
         if not load.period:
             return "theta"
-        force, first, period = load.force, load.first, load.period
+        force, first, period, start = load.force, load.first, load.period, len(self.lines)
         away = self.new(f"{force}_away", "sub", "theta", first)
         turns = self.new(f"{force}_turns", "floor", self.new(f"{force}_ratio", "div", away, period))
         back = self.new(f"{force}_back", "mul", period, turns)
@@ -202,13 +185,14 @@ class _Writer:
         late = self.new(f"{force}_is_late", "le", first, before, type="bool")
         after = self.new(f"{force}_after", "add", angle, period)
         inside = self.new(f"{force}_inside", "select", late, before, angle)
-        return self.new(f"{force}_at", "select", early, after, inside)
+        result = self.new(f"{force}_at", "select", early, after, inside)
+        self.reduced |= dict.fromkeys((line.name for line in self.lines[start:]), 1.0)
+        return result
 
     def _along(self, load: LoadLines) -> str:
         if load.over in ("Y", "V_C"):
             return self.names[load.over]
-        Y = self.names["Y"]
-        away = self.new(f"{load.force}_away", "sub", self.names[load.over], Y)
+        away = self.new(f"{load.force}_away", "sub", self.names[load.over], self.names["Y"])
         return self.new(f"{load.force}_at", "abs", away)
 
     def _ahead(self) -> str:
@@ -224,54 +208,37 @@ class _Writer:
         backwards = self.new("turns_backwards", "lt", turning, 0.0, type="bool")
         return self.new("way_ahead", "select", backwards, back, forward)
 
-    def _moved(self, load: LoadLines, parameter: str) -> Argument:
-        """The derivative of what a table is over by a parameter."""
-        if load.over in ("Y", "V_C"):
-            return self.names[f"{load.over}_wrt_{parameter}"]
-        by = self.names[f"Y_wrt_{parameter}"]
-        name = f"{load.force}_at_by_{parameter}"
-        if parameter in LENGTHS:
-            centre = self.names[f"{load.over}_wrt_{parameter}"]
-            change = self.new(f"{name}_outside", "sub", centre, by)
-        else:
-            change = self.new(f"{name}_outside", "neg", by)
-        below = self.new(f"{name}_is_inside", "lt", f"{load.force}_away", 0.0, type="bool")
-        return self.new(name, "select", below, self.new(f"{name}_inside", "neg", change), change)
-
-    def _mark(self, load: LoadLines, parameters: set[str]) -> None:
+    def _mark(self, force: str, load: LoadLines, parameters: set[str]) -> None:
         """The conditions that there is no such dead centre, and that it moves infinitely fast."""
-        force, centre = load.force, self.names[load.over]
-        there = self.new(f"{force}_is_there", "eq", centre, centre, type="bool")
+        name, centre = load.force, self.names[load.over]
+        there = self.new(f"{name}_is_there", "eq", centre, centre, type="bool")
         moves: Argument = True
         for p in sorted(parameters & set(LENGTHS)):
-            size = self.new(f"{force}_rate_{p}", "abs", self.names[f"{load.over}_wrt_{p}"])
-            finite = self.new(f"{force}_moves_{p}", "le", size, float_info.max, type="bool")
-            moves = self.new(f"{force}_moves_to_{p}", "and", moves, finite, type="bool")
+            size = self.new(f"{name}_rate_{p}", "abs", self.names[f"{load.over}_wrt_{p}"])
+            finite = self.new(f"{name}_moves_{p}", "le", size, float_info.max, type="bool")
+            moves = self.new(f"{name}_moves_to_{p}", "and", moves, finite, type="bool")
             value = self.slopes[force, p]
-            self.slopes[force, p] = self.new(f"{force}_per_{p}", "select", finite, value, nan)
-        moves = moves if isinstance(moves, str) else self.new(f"{force}_moves", "copy", True, type="bool")
-        self.status[force] = there, moves
+            self.slopes[force, p] = self.new(f"{name}_per_{p}", "select", finite, value, nan)
+        self.marks.setdefault(force, []).append((name, there, moves))
 
     def total(self, total: Total) -> str:
         """The line of a total."""
-        found = self.names[total.name]
+        result = self.names[total.name]
         for number, (slope, force, parameter) in enumerate(total.terms):
-            term = self.new(
-                f"{total.name}_term_{number}", "mul", self.names[slope], self.slopes[force, parameter]
-            )
-            found = self.new(f"{total.name}_total_{number}", "add", found, term)
+            factors = self.names[slope], self.slopes[force, parameter]
+            term = self.new(f"{total.name}_term_{number}", "mul", *factors)
+            result = self.new(f"{total.name}_total_{number}", "add", result, term)
         for force in total.forces:
-            if force in self.status:
-                found = self._with_status(total.name, found, force)
-        return found
+            for mark in self.marks.get(force, ()):
+                result = self._with_status(total.name, result, *mark)
+        return result
 
-    def _with_status(self, name: str, found: str, force: str) -> str:
-        there, moves = self.status[force]
+    def _with_status(self, name: str, value: str, table: str, there: str, moves: Argument) -> str:
         if name != STATUS:
-            return self.new(f"{name}_under_{force}", "select", there, found, nan)
-        why = self.new(f"{force}_moves_status", "select", moves, 0, 2, type="i64")
-        own = self.new(f"{force}_status", "select", there, why, 1, type="i64")
-        return self.new(f"{name}_under_{force}", "select", self._is_good(found), own, found, type="i64")
+            return self.new(f"{name}_under_{table}", "select", there, value, nan)
+        why = self.new(f"{table}_moves_status", "select", moves, 0, 2, type="i64")
+        own = self.new(f"{table}_status", "select", there, why, 1, type="i64")
+        return self.new(f"{name}_under_{table}", "select", self._is_good(value), own, value, type="i64")
 
     def _is_good(self, status: Argument) -> Argument:
         """The condition that a status is 0: what chooses it chooses True for 0 and else False."""

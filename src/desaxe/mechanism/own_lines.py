@@ -73,85 +73,61 @@ class Needed(NamedTuple):
 @lru_cache(maxsize=256)
 def lines_needed(names: tuple[str, ...], own: tuple[Definition, ...]) -> Needed:
     """The names of the derivation that user-defined names use, with their sensitivities."""
-    derived = derived_names()
-    wanted: dict[str, None] = {}
-    slow: dict[tuple[str, str], None] = {}
     known = {definition.name: definition for definition in own}
-    for name in names:
-        base, parameters = parts(name)
+    there = {*derived_names(), *(joined(centre, (length,)) for centre, length in LENGTH_OF.items())}
+    needed: dict[str, None] = {}
+    slow: dict[tuple[str, str], None] = {}
+    for base, parameters in map(parts, names):
         for leaf in leaves((base,), known):
-            wanted[leaf] = None
-            for parameter in parameters:
-                slope = sensitivity(leaf, parameter)
-                if slope in derived or slope in _CENTRE_SLOPES:
-                    wanted[slope] = None
-                elif leaf in derived and depends(leaf, parameter):
-                    slow[leaf, parameter] = None
-            if len(parameters) == 2 and leaf in derived:
-                both = sensitivity(leaf, *parameters)
-                if both in derived:
-                    wanted[both] = None
-    return Needed(tuple(wanted), tuple(slow))
-
-
-_CENTRE_SLOPES = {joined(centre, (length,)) for centre, length in LENGTH_OF.items()}
+            slopes = {sensitivity(leaf, p): p for p in parameters}
+            every = (*slopes, sensitivity(leaf, *parameters))
+            needed |= dict.fromkeys([leaf, *(slope for slope in every if slope in there)])
+            if leaf in derived_names():
+                without = (p for slope, p in slopes.items() if slope not in there and depends(leaf, p))
+                slow |= dict.fromkeys((leaf, p) for p in without)
+    return Needed(tuple(needed), tuple(slow))
 
 
 def with_own_lines(base: Program, names: tuple[str, ...], own: tuple[Definition, ...]) -> Program:
     """The program of user-defined names; `base` has the lines of `lines_needed`, in one variant."""
-    needed = lines_needed(names, own)
-    writer = _Writer(base, own, needed)
+    writer = _Writer(base, own, lines_needed(names, own))
     for name in names:
         writer.add(name)
-    return keep_outputs(writer.program(), [line_name(name, own) for name in names])
+    used = (a for line in writer.lines for a in names_in(line.args) if a not in writer.known)
+    inputs = tuple(dict.fromkeys((*base.inputs, *used)))
+    program = Program(inputs, tuple(writer.lines), base.outputs, writer.notes)
+    return keep_outputs(program, [line_name(name, own) for name in names])
 
 
 class _Writer:
-    """Appends the values of own quantities and their derivatives, each once."""
+    """Appends the values of user-defined quantities and their derivatives, each once."""
 
     def __init__(self, base: Program, own: tuple[Definition, ...], needed: Needed) -> None:
-        self.base = base
-        self.own = own
-        self.needed = needed
-        self.lines = list(base.lines)
-        self.notes = dict(base.notes)
-        self.known = {*base.inputs, *(line.name for line in base.lines)}
+        self.base, self.own, self.needed = base, own, needed
         self.values = [
             line._replace(args=tuple(line_name(a, own) if isinstance(a, str) else a for a in line.args))
             for definition in own
             for line in _value_lines(definition)
         ]
+        self.lines = [*base.lines, *self.values]
+        self.notes = {**base.notes, **{line_name(d.name, own): Note(*d[2:4], d.expression) for d in own}}
+        self.known = {*base.inputs, *(line.name for line in self.lines)}
         self.chains: dict[tuple[str, ...], Chain] = {}
-        self.started = False
-
-    def program(self) -> Program:
-        inputs = dict.fromkeys((*self.base.inputs, *_inputs_used(self.lines, self.known)))
-        return self.base._replace(inputs=tuple(inputs), lines=tuple(self.lines), notes=self.notes)
 
     def add(self, name: str) -> None:
-        """The lines of one name, value or derivative."""
+        """The lines of one derivative; those of the values are there."""
         base, parameters = parts(name)
         definition = next((d for d in self.own if d.name == base), None)
-        if definition is None:
+        result = line_name(name, self.own)
+        if definition is None or result in self.known:
             return
-        if not self.started:
-            self._append(self.values)
-            notes = {line_name(d.name, self.own): Note(d.unit, d.meaning, d.expression) for d in self.own}
-            self.notes |= notes
-            self.started = True
-        if not parameters:
-            return
-        line_of_name = line_name(name, self.own)
         slope: Argument = line_name(base, self.own)
-        value = slope
         for order in range(1, len(parameters) + 1):
-            slope = self._chain(parameters[:order]).slope(slope) if isinstance(slope, str) else 0.0
-        if line_of_name not in self.known:
-            # A derivative that is 0 is so only where there is a value: a factor says so, which
-            # `specialise` sees to.
-            op, args = ("mul", (value, 0.0)) if slope == 0.0 else ("copy", (slope,))
-            self._append([Line(line_of_name, op, args)])
-            self.notes[line_of_name] = Note(*derivative_row(definition.name, definition.unit, parameters))
+            slope = self._chain(parameters[:order]).slope(slope)
+        # A derivative of 0 is so only where there is a value: a factor says so, which `specialise` sees to.
+        zero = Line(result, "mul", (line_name(base, self.own), 0.0))
+        self._append([zero if slope == 0.0 else Line(result, "copy", (slope,))])
+        self.notes[result] = Note(*derivative_row(definition.name, definition.unit, parameters))
 
     def _chain(self, parameters: tuple[str, ...]) -> Chain:
         """All derivatives by some parameters: those by the last one of the derivatives by the others."""
@@ -210,7 +186,3 @@ def _value_lines(definition: Definition) -> tuple[Line, ...]:
     own = {line.name: f"{PREFIX}{definition.name}_{n}" for n, line in enumerate(program.lines)}
     own[program.outputs[0]] = line_name(definition.name, (definition,))
     return renamed(program, own).lines
-
-
-def _inputs_used(lines: Iterable[Line], known: set[str]) -> list[str]:
-    return [name for line in lines for name in names_in(line.args) if name not in known]

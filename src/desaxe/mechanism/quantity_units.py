@@ -9,7 +9,6 @@ length that is named, per second; a quantity may have a unit of its own. A sensi
 
 import re
 from collections.abc import Iterable, Mapping
-from functools import lru_cache
 from typing import Any
 
 from ..support.computed import computed_once
@@ -17,7 +16,7 @@ from ..units.system import DIMENSIONS, Conversion, conversions_by_unit, read_uni
 from .catalogue import quantity
 from .inputs import INPUTS, OF_SHAFTS
 from .names import parts
-from .own import Register, register
+from .own import register
 
 PLAIN = Conversion("1")
 # Units of inputs and results that are no quantities of the catalogue.
@@ -54,7 +53,7 @@ class UnitSystem:
     def __init__(self, units: Mapping[str, str], quotients: bool = True) -> None:
         self.units = dict(units)
         self.quotients = quotients
-        self.remembered: dict[tuple[str, str], Conversion] = {}  # by name and parameter
+        self.remembered: dict[tuple[str, str], Conversion | None] = {}  # by name and parameter
 
     @classmethod
     def read(cls, units: "str | Mapping[str, str] | UnitSystem | None") -> "UnitSystem":
@@ -95,10 +94,19 @@ class UnitSystem:
             return Conversion(_simplified(name, result.unit)) if result.si == 1 else result
         return self.of_unit(si_unit(name))
 
-    def find(self, name: str) -> Conversion | None:
-        """The conversion of a name; None where it has no unit."""
+    def find(self, name: str, by: str = "") -> Conversion | None:
+        """The conversion of a name, or of its derivative by another one; None where it has no unit."""
+        known = {} if register().rows else self.remembered
+        if (name, by) not in known:
+            known[name, by] = self._look_up(name, by)
+        return known[name, by]
+
+    def _look_up(self, name: str, by: str) -> Conversion | None:
+        if by:
+            own, per = self.find(name) or PLAIN, self.find(by)
+            return own.per([per]) if per else own
         try:
-            return self.of(name)
+            return self.of(name) if name else None
         except ValueError:
             return None
 
@@ -163,13 +171,9 @@ class QuantityUnit(str):
 
 def unit_of(name: Any, by: Any = "") -> QuantityUnit:
     """The unit of a name, or of a measure such as ("absmax", "a_C"); "1" where there is none."""
-    told = [part[-1] if isinstance(part, (tuple, list)) else part for part in (name, by)]
-    return _unit_of(*(part if isinstance(part, str) else "" for part in told), register())
-
-
-@lru_cache(maxsize=4096)
-def _unit_of(name: str, by: str, known: Register) -> QuantityUnit:
-    unit = QuantityUnit(_conversion(SI, name, by).unit)
+    last = [part[-1] if isinstance(part, (tuple, list)) else part for part in (name, by)]
+    name, by = (part if isinstance(part, str) else "" for part in last)
+    unit = QuantityUnit((SI.find(name, by) or PLAIN).unit)
     unit.name, unit.by = name, by
     return unit
 
@@ -181,16 +185,11 @@ def units_of(names: Iterable[str]) -> dict[str, QuantityUnit]:
 
 def units_by_name(found: Mapping[Any, Any]) -> dict[Any, Any]:
     """The units of an answer whose keys are the names of what they are, those of `gradient` too."""
-    known = [key for key in found if isinstance(key, str) and _has_unit(key, register())]
-    units: dict[Any, Any] = units_of(known)
+    names = (key for key in found if isinstance(key, str) and key != "status" and SI.find(key))
+    units: dict[Any, Any] = units_of(names)
     if "gradient" in found:
         units["gradient"] = {name: slopes_of(name, slopes) for name, slopes in found["gradient"].items()}
     return units
-
-
-@lru_cache(maxsize=4096)
-def _has_unit(key: str, known: Register) -> bool:
-    return key != "status" and SI.find(key) is not None
 
 
 def units_of_extreme(name: str, found: Mapping[Any, Any]) -> dict[str, Any]:
@@ -211,15 +210,4 @@ def conversion_of(unit: str, system: UnitSystem) -> Conversion:
     """The conversion of numbers in this SI unit; that of the quantity itself where the unit knows it."""
     if not isinstance(unit, QuantityUnit):
         return system.of_unit(unit)
-    if register().rows:
-        return _conversion(system, unit.name, unit.by)
-    known = system.remembered.get((unit.name, unit.by))
-    if known is None:
-        known = system.remembered[unit.name, unit.by] = _conversion(system, unit.name, unit.by)
-    return known
-
-
-def _conversion(system: UnitSystem, name: str, by: str) -> Conversion:
-    own = system.find(name) if name else None
-    per = system.find(by) if by else None
-    return (own or PLAIN) if per is None else (own or PLAIN).per([per])
+    return system.find(unit.name, unit.by) or PLAIN

@@ -208,7 +208,4 @@ class SimulationStatus(Status):
     NO_START = 6, "a bad input, no mechanism at the start, or not the dead centre that a load is over"
 
 
-TABLES = (
-    PointStatus, PeakStatus, TurnStatus, InverseStatus, EnclosureStatus, ToleranceStatus, OptimizeStatus,
-    SynthesisStatus, DriveStatus, SteadyStatus, FitStatus, SimulationStatus,
-)  # fmt: skip
+TABLES = tuple(Status.__subclasses__())

@@ -26,8 +26,8 @@ from ..runtime.executor import CompiledKernel
 from ..runtime.native_calls import bind_kernel, ufunc_of
 from ..runtime.specialise import specialise
 from ..support.forks import IMPORTS, ForkSafeLock
-from ..support.interrupts import finished
 from ..support.recent import Recent
+from ..support.signals import finished
 from .nodes import Array
 from .special import SearchedDesigns
 

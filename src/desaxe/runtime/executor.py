@@ -13,8 +13,8 @@ from ..compiler.llvm.machine import Code, compiled, lanes
 from ..compiler.llvm.nest import HEAD, NAME, Entry, module_text
 from ..mechanism.constants import limit_of
 from ..support.forks import ForkSafeLock
-from ..support.interrupts import finished
 from ..support.recent import Recent
+from ..support.signals import finished
 from .kernels import KernelKey, kernel_of
 
 MOST_KEPT = 256  # kernels that nobody else keeps

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..compiler.llvm.machine import compiled
 from ..mechanism.names import STATUSES
 from ..support.forks import imported
-from ..support.interrupts import finished
+from ..support.signals import finished
 from .executor import CompiledKernel, compiled_kernel
 from .kernels import KernelKey
 from .left_over import settle

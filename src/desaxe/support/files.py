@@ -18,21 +18,17 @@ from pathlib import Path
 from typing import Any
 
 from .forks import IMPORTS
-from .locks import try_lock
+from .locks import opened, try_lock
 from .shown import printable, shown
 
 PREFIX = ".desaxe-"
-_REPLACED = (
-    "replaced"  # in a staging folder: what was moved out of the way, where two names cannot be swapped
-)
+# In a staging folder: what was moved out of the way, where two names cannot be swapped.
+_REPLACED = "replaced"
 _UNLOCKED_AGE = 86_400.0  # seconds after which a staging folder is left, where there are no locks
 _KINDS = {
-    stat.S_IFIFO: "a pipe",
-    stat.S_IFSOCK: "a socket",
-    stat.S_IFCHR: "a device",
-    stat.S_IFBLK: "a device",
+    stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device",
     stat.S_IFDIR: "a folder",
-}
+}  # fmt: skip
 
 
 def as_path(name: str, value: Any) -> Path:
@@ -127,46 +123,36 @@ def _new_staging(parent: Path) -> tuple[Path, int | None]:
             folder = Path(tempfile.mkdtemp(dir=parent, prefix=PREFIX))
         except OSError as error:  # named by what the user knows
             raise type(error)(error.errno, error.strerror, str(parent)) from None
-        if sys.platform == "win32":
-            return folder, None
-        try:
-            descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
-        except FileNotFoundError:
-            continue
-        if try_lock(descriptor) is not False and folder.is_dir():
-            return folder, descriptor
-        os.close(descriptor)
+        with suppress(FileNotFoundError):
+            descriptor = opened(folder)
+            if descriptor is None or (try_lock(descriptor) is not False and folder.is_dir()):
+                return folder, descriptor
+            os.close(descriptor)
 
 
 def remove_strays(parent: Path) -> list[Path]:
     """Remove staging folders that a killed process of this user left; return those that were there."""
     with suppress(OSError):
-        found = [path for path in parent.iterdir() if path.name.startswith(PREFIX)]
-        return [path for path in found if _remove_stray(path)]
+        return [one for one in parent.iterdir() if one.name.startswith(PREFIX) and _remove_stray(one)]
     return []
 
 
 def _remove_stray(path: Path) -> bool:
     with suppress(OSError):
         about = path.lstat()
-        if not stat.S_ISDIR(about.st_mode) or (sys.platform != "win32" and about.st_uid != os.geteuid()):
+        if not stat.S_ISDIR(about.st_mode) or about.st_uid != getattr(os, "geteuid", lambda: about.st_uid)():
             return False
-        if sys.platform == "win32":
-            return time.time() - about.st_mtime > _UNLOCKED_AGE and _cleared(path)
-        descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+        descriptor = opened(path, getattr(os, "O_NOFOLLOW", 0))
         try:
-            free = try_lock(descriptor)
-            old = free is None and time.time() - about.st_mtime > _UNLOCKED_AGE
-            return (free is True or old) and _cleared(path)
+            free = None if descriptor is None else try_lock(descriptor)
+            if free or (free is None and time.time() - about.st_mtime > _UNLOCKED_AGE):
+                _restore(path)
+                shutil.rmtree(path, ignore_errors=True)
+                return True
         finally:
-            os.close(descriptor)
+            if descriptor is not None:
+                os.close(descriptor)
     return False
-
-
-def _cleared(stray: Path) -> bool:
-    _restore(stray)
-    shutil.rmtree(stray, ignore_errors=True)
-    return True
 
 
 def _restore(stray: Path) -> None:

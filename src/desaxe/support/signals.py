@@ -8,7 +8,9 @@ import _signal  # type: ignore[import-not-found]
 from collections.abc import Callable
 from threading import get_ident, main_thread
 from types import FrameType, TracebackType
-from typing import Any
+from typing import Any, TypeVar
+
+T = TypeVar("T")
 
 EVERY = range(1, _signal.NSIG)
 
@@ -60,3 +62,9 @@ class put_off:
                 _signal.signal(number, handler)
         if self.raised:
             raise self.raised[0]
+
+
+def finished(work: Callable[[], T]) -> T:
+    """Run work, such as a compilation, to its end: an interrupt is raised when it is done."""
+    with put_off():
+        return work()

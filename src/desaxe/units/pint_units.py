@@ -5,7 +5,7 @@ from functools import cache
 from typing import Any
 
 from ..support.extras import explained
-from ..support.interrupts import import_whole
+from ..support.forks import imported
 from .dimensions import NONE, Unit
 from .table import ScaledUnit
 
@@ -17,7 +17,7 @@ _BASES["gram"] = _BASES["kilogram"]
 def registry(number: type = float) -> Any:
     """The registry of units of the quantities that answers are made of; `number`: the type of its factors."""
     with explained("a quantity with a unit"):
-        units: Any = import_whole("pint").UnitRegistry(non_int_type=number)
+        units: Any = imported("pint").UnitRegistry(non_int_type=number)
     units.define("@alias revolution = rev")
     units.define("@alias revolutions_per_minute = RPM")
     return units
@@ -26,7 +26,7 @@ def registry(number: type = float) -> Any:
 def unit_of_pint(name: str) -> ScaledUnit:
     """The unit that pint knows by a name; ValueError where it knows none, or one of no mechanism."""
     with explained(f"the unit {name!r}"):
-        import_whole("pint")
+        imported("pint")
     try:
         size = registry(Fraction).Quantity(Fraction(1), name).to_root_units()
         magnitude = Fraction(size.magnitude)

@@ -95,7 +95,7 @@ def alone():
     folder = Path(os.environ["DESAXE_TESTS_FOLDER"]) / "modules"
     folder.mkdir(exist_ok=True)
     kept = folder / "found"
-    with locked(kept.with_suffix(".lock"), 600.0, "another worker makes the modules"):
+    with locked(folder, 600.0):  # one worker makes the modules
         if not kept.exists():
             for name, scene in SCENES.items():
                 dx.compile(scene, folder / f"kernels_{name}.py")

@@ -43,7 +43,7 @@ class Chain:
         self.prefix = prefix  # begins the names of its lines
         self.rules = RULES if rules is None else rules
         self.lines: list[Line] = []
-        self.slopes: dict[str, str] = {}
+        self.slopes: dict[str, Argument] = {}
 
     def slope(self, argument: Argument) -> Argument:
         """The derivative of an argument."""

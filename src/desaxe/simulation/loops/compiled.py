@@ -11,7 +11,7 @@ from ...compiler.llvm.loops import CompiledLoops
 from ...mechanism.program import Variant
 from ...runtime.executor import CompiledKernel, compiled_kernel, kernel_for
 from ...runtime.kernels import KernelKey
-from ...support.interrupts import finished
+from ...support.signals import finished
 from .advance import advance
 from .motions import designs
 

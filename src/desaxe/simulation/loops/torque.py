@@ -8,7 +8,7 @@ from typing import Any
 
 from ...loads.arguments import arguments_of
 from ...support.forks import IMPORTS, ForkSafeLock, imported
-from ...support.interrupts import finished
+from ...support.signals import finished
 from ..checks import TIME_AND_CRANK
 from .values_read import values_read
 

@@ -5,8 +5,8 @@ from functools import cache
 import numpy as np
 
 from ....compiler.llvm.loops import CompiledLoops
-from ....support.interrupts import finished
 from ....support.panels import NODE, NODES, RUNNING, TO_COEFFICIENTS, WEIGHT, Array
+from ....support.signals import finished
 from . import follow
 
 BLOCK = 8  # nodes among the turns of a block
