@@ -390,7 +390,10 @@ WORDS = ["Y", "theta=0:360:5", "ec=0", "AB=0.1", "BC=0.3"]
 OF_SEVERAL = [
     (lambda: dx.evaluate("Y", theta=[0, 90, 360], **DESIGN), 'theta = "360 deg"'),
     (lambda: dx.peak("Y", theta=(0, 180), **DESIGN), 'theta = "180 deg"'),
-    (lambda: dx.solve(over={"AB": (30, 60)}, where={("max", "Y"): 280}, ec=0, BC=200.5), 'AB = "60 mm"; BC = 200.5 m'),
+    (
+        lambda: dx.solve(over={"AB": (30, 60)}, where={("max", "Y"): 260}, ec=0, BC=200.5),
+        'AB = "60 mm"; BC = 200.5 m',
+    ),
     (lambda: dx.Crankshaft(dx.Machine(**DESIGN), phase=[0, 180, 180, 0]), 'phase = "180 deg"'),
     (lambda: dx.Crankshaft(dx.Machine(**DESIGN), phase=[0, 1]).replace(**{"phase[1]": 90}), '"90 deg"'),
     (lambda: main(["evaluate", *WORDS]), 'theta = "360 deg"'),
