@@ -144,7 +144,7 @@ def _into_stored(data: "Data") -> "Data":
 
 def _write(data: "Data") -> None:
     """The page, its pictures, the short table."""
-    from desaxe.plot.save import save
+    from desaxe.plot import save
 
     from .picture import errors_over_time, time_over_points
     from .report import GROWTH_PICTURE, PICTURE, page, with_table

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from desaxe.plot.save import save
+from desaxe.plot import save
 from desaxe.support.progress import progress_bar
 from desaxe.support.written import write_whole
 

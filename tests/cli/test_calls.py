@@ -165,6 +165,17 @@ def test_files_and_tables(tmp_path, capsys):
     out = capsys.readouterr().out.splitlines()
     assert "name,value,unit" in out
     assert any(line.startswith("gradient.stroke.AB,") for line in out)
+    drawings = {
+        f"grid a_C V_C theta=0deg:360deg:5 omega0=157 {LENGTHS}": 0,
+        "design_map stroke ec=0mm:20mm:3 AB=100mm,120mm BC=350mm": 0,
+        "design_map stroke ec=0mm:20mm:3 AB=100mm,120mm BC=350mm,360mm": 2,
+        f"events {LENGTHS}": 2,
+    }
+    for number, (line, code) in enumerate(drawings.items()):
+        picture = tmp_path / f"{number}.svg"
+        assert main([*line.split(), "-o", str(picture)]) == code
+        assert picture.exists() == (code == 0)
+    assert "not stroke over ec, AB, BC" in capsys.readouterr().err
     path.write_text("a measurement")
     assert main([*words, "-o", str(path)]) == 2
     assert path.read_text() == "a measurement"

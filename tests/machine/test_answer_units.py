@@ -8,7 +8,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.mechanism.ranges import Between, PlusMinus
-from desaxe.plot.titles import title_of
+from desaxe.plot.style import title_of
 from desaxe.units.pint_units import registry
 
 SI = {"ec": 0.01, "AB": 0.05, "BC": 0.2, "omega0": 31.0, "m_slider": 4.0, "I_crank": 0.5, "F_Y": -600.0}

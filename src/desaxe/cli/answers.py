@@ -47,9 +47,7 @@ def written(answer: Any, options: argparse.Namespace) -> None:
 
 def _write(answer: Any, path: Path, overwrite: bool) -> None:
     if path.suffix in PICTURES:
-        if not hasattr(answer, "plot") or hasattr(answer, "data_vars"):
-            raise UsageError(f"-o {printable(path)}: this answer has no picture; name a .json or .csv file")
-        answer.plot().save(path, overwrite=overwrite)
+        _picture(answer, path).save(path, overwrite=overwrite)
     elif hasattr(answer, "data_vars") and path.suffix in DATASETS:
         from ..scenes.stores.files import write
 
@@ -65,6 +63,28 @@ def _write(answer: Any, path: Path, overwrite: bool) -> None:
             staged.write_text(_file_text(answer, path.suffix), encoding="utf-8", newline="\n")
     else:
         raise UsageError(f"-o {printable(path)}: this answer is no Dataset; name a .json or .csv file")
+
+
+def _picture(answer: Any, path: Path) -> Any:
+    """The picture of an answer; of a grid its curves, of one quantity over two inputs their map."""
+    if not hasattr(answer, "data_vars"):
+        if hasattr(answer, "plot"):
+            return answer.plot()
+        raise UsageError(f"-o {printable(path)}: this answer has no picture; name a .json or .csv file")
+    from .. import plot
+
+    dims = list(map(str, answer.dims))
+    beside = ("status", "margin", "can_turn", "kind")
+    names = [str(n) for n, a in answer.data_vars.items() if a.dims and n not in beside]
+    over = "theta" if "theta" in dims else dims[0] if len(dims) == 1 else ""
+    if over and len(dims) < 3:
+        return plot.panels(answer, names, over=over)
+    if len(dims) == 2 and len(names) == 1:
+        return plot.design_map(answer, names[0])
+    words = f"{', '.join(names)} over {', '.join(dims)}"
+    raise UsageError(
+        f"-o {printable(path)}: a picture is of curves over one input, or of one map; not {words}"
+    )
 
 
 def _file_text(answer: Any, suffix: str) -> str:

@@ -11,8 +11,9 @@ from ..loads.angles import cycle
 from ..loads.load import Load
 from ..loads.resolve import as_load, split
 from ..mechanism.closed import TURN
+from ..mechanism.names import LENGTHS
 from ..mechanism.own import using
-from ..plot.mechanism import label_lengths
+from ..plot.mechanism import sketched
 from ..runtime.request import several
 from ..support.shown import printed
 from .arguments import in_si
@@ -97,10 +98,9 @@ class Plots:
 
     def mechanism(self, theta: Any = "60 deg", *, ax: Any = None) -> Any:
         """Draw the machine to scale at a crank angle: see `desaxe.plot.mechanism`."""
-        lengths = {key: self._machine[key] for key in ("ec", "AB", "BC", "branch") if key in self._machine}
-        sketch = plot.mechanism(theta=in_si(self._machine.units, "theta", theta), ax=ax, **lengths)
-        label_lengths(sketch.axes, self._machine.units.of("ec"))
-        return sketch
+        lengths = {name: self._machine.get(name) for name in LENGTHS}
+        angle = in_si(self._machine.units, "theta", theta)
+        return sketched(angle, lengths, self._machine.get("branch", 1), self._machine.units, ax)
 
     def load(self, load: Any = "F_Y", *, ax: Any = None) -> Any:
         """Draw a load over the crank angle or the slider's place: see `desaxe.plot.load`.

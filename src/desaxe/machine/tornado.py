@@ -11,8 +11,8 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
 from ..mechanism.program import program_of
 from ..mechanism.ranges import Between, PlusMinus
-from ..plot.from_dict import as_dataset
-from ..plot.titles import title_of
+from ..plot.dataset import as_dataset
+from ..plot.style import title_of
 from ..plot.tornado import value_text
 from ..units.text import PLUS_MINUS
 from .arguments import in_si

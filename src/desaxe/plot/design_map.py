@@ -6,15 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.names import LENGTHS
-from ..support.extras import needed
 from ..support.forks import IMPORTS
+from .dataset import choose
 from .picture import Picture
-from .shared import choose, finish_axis, label_of, shown
-from .titles import title_of
+from .style import axes_of, finish_axis, head, label_of, shown, title_of
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
 
 SIZE = (7.6, 5.2)  # inches
 LEVELS = 12
@@ -26,7 +24,7 @@ GEOMETRIC = (0, 1, 2)  # what the lengths alone decide
 
 
 def design_map(
-    dataset: "xr.Dataset", name: str, *, x: str | None = None, y: str | None = None, ax: "Axes | None" = None
+    dataset: "xr.Dataset", name: str, *, x: str | None = None, y: str | None = None, ax: Any = None
 ) -> Picture:
     """Draw a quantity over two inputs as filled contours; a Picture of matplotlib's ContourSet.
 
@@ -39,24 +37,21 @@ def design_map(
     A quantity that grows without bound towards the edge is shown up to most of its values. Raises
     ValueError for a name or dimension that the dataset does not have, or that is left over.
     """
-    with needed("plot.design_map"):
-        from matplotlib.figure import Figure
+    axes = axes_of("design_map", ax, SIZE)
     array, x, y = _plane(dataset, name, x, y)
-    own = ax is None
-    axes: Any = Figure(figsize=SIZE, layout="constrained").add_subplot() if ax is None else ax
     edge = _infeasible(dataset, array, x, y)
     values = np.where(edge > 0.0, np.nan, np.asarray(array.values, dtype=np.float64))
     across, up = shown(array[x]), shown(array[y])
     levels, extend = _levels(values)
-    drawn = axes.contourf(across, up, _widened(values), levels, extend=extend, cmap="viridis")
-    lines = axes.contour(across, up, _widened(values), levels, colors="w", linewidths=0.6)
-    _label(axes, lines, across, up)
+    wide = _widened(values)
+    drawn = axes.contourf(across, up, wide, levels, extend=extend, cmap="viridis")
+    _label(axes, axes.contour(across, up, wide, levels, colors="w", linewidths=0.6), across, up, values)
     _hatch(axes, across, up, edge)
     axes.figure.colorbar(drawn, ax=axes, label=label_of(array))
     finish_axis(axes.xaxis, array[x])
     finish_axis(axes.yaxis, array[y])
-    if own:
-        axes.set_title(title_of(dataset, [name]), loc="left", fontsize="medium")
+    if ax is None:
+        head(axes, title_of(dataset, [name]))
     return Picture(axes, [drawn], drawn)
 
 
@@ -111,34 +106,38 @@ def _widened(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Fill each NaN next to a number with its value, so that colours reach under the hatching."""
     wide = values
     for axis in (0, 1):
-        for step in (1, -1):
-            beside = np.roll(wide, step, axis)
-            edge = [slice(None)] * 2
-            edge[axis] = slice(0, 1) if step > 0 else slice(-1, None)
-            beside[tuple(edge)] = np.nan
+        padded = np.pad(wide, [(1, 1) if k == axis else (0, 0) for k in (0, 1)], constant_values=np.nan)
+        for first in (0, 2):
+            beside = np.take(padded, range(first, first + values.shape[axis]), axis)
             wide = np.where(np.isnan(wide), beside, wide)
     return wide
 
 
-def _label(axes: Any, lines: Any, across: Any, up: Any) -> None:
+def _label(axes: Any, lines: Any, across: Any, up: Any, values: NDArray[np.float64]) -> None:
     """Label the contours that are long enough, each where it is furthest from others, if there is space."""
     with IMPORTS:
         from matplotlib.patheffects import withStroke
 
-    size = np.array([np.ptp(across) or 1.0, np.ptp(up) or 1.0])
-    scaled = [[(piece - (np.min(across), np.min(up))) / size for piece in level] for level in lines.allsegs]
-    whole = [np.concatenate([np.empty((0, 2)), *pieces]) for pieces in scaled]
-    taken = np.empty((0, 2))
+    ends, none = np.array([(np.min(across), np.min(up)), (np.max(across), np.max(up))]), np.empty((0, 2))
+    size = np.where(np.ptp(ends, axis=0) > 0.0, np.ptp(ends, axis=0), 1.0)
+    scaled = [[(piece - ends[0]) / size for piece in level] for level in lines.allsegs]
+    whole = [np.concatenate([none, *pieces]) for pieces in scaled]
+    labels = none
     for number, pieces in enumerate(scaled):
         long = [p for p in pieces if np.linalg.norm(np.diff(p, axis=0), axis=1).sum() > LONG]
-        points = np.concatenate([np.empty((0, 2)), *long])
+        points = np.concatenate([none, *long])
         points = points[((points > APART) & (points < 1.0 - APART)).all(axis=1)]
-        lines_apart = _distances(points, np.concatenate([*whole[:number], *whole[number + 1 :], taken]))
-        gaps = np.where(_distances(points, taken) > 1.5 * APART, lines_apart, 0.0)
+        column, row = (
+            np.abs(points[:, [k]] * size[k] + ends[0, k] - grid).argmin(axis=1)
+            for k, grid in enumerate((across, up))
+        )
+        points = points[np.isfinite(values[row, column])]
+        gaps = _distances(points, np.concatenate([*whole[:number], *whole[number + 1 :], labels]))
+        gaps = np.where(_distances(points, labels) > 1.5 * APART, gaps, 0.0)
         if gaps.max(initial=0.0) > CLEAR:
-            taken = np.append(taken, points[[gaps.argmax()]], axis=0)
-    places = taken * size + (np.min(across), np.min(up))
-    for text in axes.clabel(lines, manual=[tuple(p) for p in places], fontsize=8) if len(places) else ():
+            labels = np.append(labels, points[[gaps.argmax()]], axis=0)
+    where = [tuple(point) for point in labels * size + ends[0]]
+    for text in axes.clabel(lines, manual=where, fontsize=8) if where else ():
         text.set_path_effects([withStroke(linewidth=1.5, foreground="0.2")])
 
 

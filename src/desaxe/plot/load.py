@@ -1,35 +1,31 @@
-"""A load over the crank angle or the slider's place, each way of the slider, and its points."""
+"""A load over the crank angle, the slider's position or its speed, each way of the slider, and its points."""
 
-from math import ceil, inf
-from typing import TYPE_CHECKING, Any
+from math import inf
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..loads.along_motion import OfMotion
 from ..loads.load import Load, OverTheta, OverY
-from ..mechanism.closed import TURN
 from ..mechanism.quantity_units import SI, UnitSystem
-from ..support.extras import needed
 from ..support.shown import printed
 from .picture import Picture
-from .shared import BLUE, ORANGE, finish
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from .style import BLUE, ORANGE, angle_ticks, axes_of, finish, head
 
 Array = NDArray[np.float64]
 SIZE = (7.0, 3.6)  # inches
 NODES = 1001  # of a curve, beside those on both sides of each point
 STYLES: tuple[dict[str, Any], ...] = ({"color": BLUE}, {"color": ORANGE, "linestyle": "--"})
 BEYOND = 0.08  # of the range of positions: so far it is shown how the values at the ends hold
+Curves = tuple[Array, dict[str, Array], Array]  # abscissae, curves by name, abscissae of points
 
 
 def load(
     load: Load,
     *,
     over: tuple[float, float] | None = None,
-    ax: "Axes | None" = None,
+    ax: Any = None,
     units: UnitSystem | None = None,
 ) -> Picture:
     """Draw a load over its period, over the slider's position, distance from a dead centre or speed.
@@ -42,64 +38,56 @@ def load(
     Returns a Picture of the lines by name: load, or outward and inward where each has its own, and the points
     of a table. The curve is that which is computed with, between the points and beyond the first and last.
     """
-    with needed("plot.load"):
-        from matplotlib.figure import Figure
-        from matplotlib.ticker import MultipleLocator
-    if ax is None:
-        ax = Figure(figsize=SIZE, layout="constrained").subplots()
+    axes = axes_of("load", ax, SIZE)
     units = units or load.shown_in or SI
     force = load.values_in(units)
+    values = np.array([y for table in load.tables for y in table.values])
     along: Any
     if isinstance(load, OverTheta):
-        places, curves, points = _over_theta(load)
-        along, what = np.degrees, "crank angle, theta [deg]"
-        ax.xaxis.set_major_locator(MultipleLocator(45.0 * ceil(load.period / TURN)))
-    elif isinstance(load, OfMotion):
-        places, curves, points = _over_column(load, over, units)
-        along = units.of(load.needs[0]).shown
-        what = f"{load.over} [{printed(units.of(load.needs[0]).unit)}]"
+        along, label = np.degrees, "crank angle, theta [deg]"
+        abscissae, curves, points = _over_theta(load)
+        angle_ticks(axes.xaxis)
+    elif isinstance(load, OverY):
+        along, label = units.of("Y").shown, f"{load.place.removeprefix('the ')} [{units.of('Y').unit}]"
+        abscissae, curves, points = _over_position(load)
     else:
-        assert isinstance(load, OverY)
-        places, curves, points = _over_position(load)
-        along, what = units.of("Y").shown, f"{load.place.removeprefix('the ')} [{units.of('Y').unit}]"
+        assert isinstance(load, OfMotion)
+        column = units.of(load.needs[0])
+        along, label = column.shown, f"{load.over} [{printed(column.unit)}]"
+        abscissae, curves, points = _over_column(load, None if over is None else [*map(column.to_si, over)])
+        values = _at(load, points) if points.size else points
     lines: dict[str, Any] = {}
-    for (name, values), style in zip(curves.items(), STYLES, strict=False):
-        (lines[name],) = ax.plot(along(places), force.shown(values), linewidth=1.6, label=name, **style)
-    if points[0].size:
-        (lines["points"],) = ax.plot(
-            along(points[0]), force.shown(points[1]), "o", color="0.25", markersize=4
-        )
-    ax.set(xlabel=what, ylabel=f"load [{printed(force.unit)}]", xlim=tuple(along(places[[0, -1]])))
-    ax.set_title(load.told(force)[1:-1], loc="left", fontsize="medium", wrap=True)
+    for (name, curve), style in zip(curves.items(), STYLES, strict=False):
+        (lines[name],) = axes.plot(along(abscissae), force.shown(curve), linewidth=1.6, label=name, **style)
+    if points.size:
+        at = along(points), force.shown(values)
+        (lines["points"],) = axes.plot(*at, "o", color="0.25", markersize=4)
+    axes.set(xlabel=label, ylabel=f"load [{printed(force.unit)}]", xlim=tuple(along(abscissae[[0, -1]])))
+    head(axes, load.told(force)[1:-1], wrap=True)
     if len(curves) > 1:
-        ax.legend(frameon=False, fontsize="small")
-    finish(ax)
-    return Picture(ax, lines)
+        axes.legend(frameon=False, fontsize="small")
+    finish(axes)
+    return Picture(axes, lines)
 
 
-Drawn = tuple[Array, dict[str, Array], tuple[Array, Array]]  # places, curves by name, points
-
-
-def _over_theta(load: OverTheta) -> Drawn:
+def _over_theta(load: OverTheta) -> Curves:
     """A load over one period from 0, in SI units."""
     knots = np.array([x for table in load.tables for x in table.knots]) % load.period
-    values = np.array([y for table in load.tables for y in table.values])
-    places = _nodes(0.0, load.period, np.append(knots, load.nodes(0.0, load.period, False)))
-    return places, {"load": load.value(places)}, (knots, values)
+    abscissae = _nodes(0.0, load.period, np.append(knots, load.nodes(0.0, load.period, False)))
+    return abscissae, {"load": load.value(abscissae)}, knots
 
 
-def _over_position(load: OverY) -> Drawn:
+def _over_position(load: OverY) -> Curves:
     """A load over the range of its positions and a little beyond, each way of the slider, in SI units."""
     knots = np.array(load.outward.knots)
-    room = BEYOND * (knots[-1] - knots[0])
-    places = _nodes(max(knots[0] - room, 0.0 if load.centre else -inf), knots[-1] + room, knots)
+    margin = BEYOND * (knots[-1] - knots[0])
+    abscissae = _nodes(max(knots[0] - margin, 0.0 if load.centre else -inf), knots[-1] + margin, knots)
     ways = {"load": 1.0} if load.inward is None else {"outward": 1.0, "inward": -1.0}
-    curves = {name: load.value(places, way) for name, way in ways.items()}
-    values = np.array([y for table in load.tables for y in table.values])
-    return places, curves, (np.tile(knots, len(load.tables)), values)
+    curves = {name: load.value(abscissae, way) for name, way in ways.items()}
+    return abscissae, curves, np.tile(knots, len(load.tables))
 
 
-def _over_column(load: OfMotion, over: tuple[float, float] | None, units: UnitSystem) -> Drawn:
+def _over_column(load: OfMotion, over: list[float] | None) -> Curves:
     """A load over the slider's position or speed, in SI units."""
     if len(load.needs) > 1:
         raise TypeError(
@@ -108,19 +96,19 @@ def _over_column(load: OfMotion, over: tuple[float, float] | None, units: UnitSy
     knots = np.array(load.speeds if load.tables else [])
     if over is None and not knots.size:
         raise TypeError(f"plot.load: over=(low, high) is missing, the range of {load.over} to draw")
-    room = BEYOND * (knots[-1] - knots[0]) if knots.size else 0.0
-    column = units.of(load.needs[0])
-    low, high = (column.to_si(x) for x in over) if over is not None else (knots[0] - room, knots[-1] + room)
-    places = _nodes(float(low), float(high), knots)
+    margin = BEYOND * np.ptp(knots) if knots.size else 0.0
+    low, high = (knots[0] - margin, knots[-1] + margin) if over is None else over
+    abscissae = _nodes(float(low), float(high), knots)
+    return abscissae, {"load": _at(load, abscissae)}, knots
 
-    def values(x: Array) -> Array:
-        return np.asarray(load.partials({load.needs[0]: x}).value)
 
-    return places, {"load": values(places)}, (knots, values(knots) if knots.size else knots)
+def _at(load: OfMotion, column: Array) -> Array:
+    """The values of a load at those of its one column."""
+    return np.asarray(load.partials({load.needs[0]: column}).value)
 
 
 def _nodes(low: float, high: float, knots: Array) -> Array:
-    """Places between two ends, those on both sides of each knot among them, where it may jump."""
+    """Abscissae between two ends, those on both sides of each knot among them, where it may jump."""
     sides = np.concatenate([np.nextafter(knots, -inf), knots, np.nextafter(knots, inf)])
-    places: Array = np.unique(np.clip(np.concatenate([np.linspace(low, high, NODES), sides]), low, high))
-    return places
+    nodes: Array = np.unique(np.clip(np.concatenate([np.linspace(low, high, NODES), sides]), low, high))
+    return nodes

@@ -1,14 +1,13 @@
-"""`Picture`: what a function of `desaxe.plot` drew, to build on, to save, and to show in a notebook."""
+"""`Picture`: what a function of `desaxe.plot` drew, to build on, to show in a notebook, and to save."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from io import BytesIO
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from .save import save
-
-OWN = ("figure", "axes", "artists", "_drawn")
+from ..support.forks import IMPORTS
+from ..support.written import GIF_COMMENT, PAGE, SIGNED, write_whole
 
 
 class Picture:
@@ -23,8 +22,10 @@ class Picture:
     """
 
     def __init__(self, axes: Any, artists: Any, drawn: Any = None) -> None:
-        first = axes[0] if isinstance(axes, list) else axes
-        self.figure, self.axes, self.artists = _root(first.figure), axes, artists
+        figure = (axes[0] if isinstance(axes, list) else axes).figure
+        while not hasattr(figure, "savefig"):  # a part of a figure
+            figure = figure.figure
+        self.figure, self.axes, self.artists = figure, axes, artists
         self._drawn = artists if drawn is None else drawn
 
     def save(self, path: str | PathLike[str], dpi: float | None = None, **options: Any) -> Path:
@@ -50,10 +51,6 @@ class Picture:
             raise AttributeError(name)
         return getattr(self._drawn, name)
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        own = name in OWN or not hasattr(self._drawn, name)
-        object.__setattr__(self if own else self._drawn, name, value)
-
     def _repr_png_(self) -> bytes:
         """The picture in a notebook."""
         image = BytesIO()
@@ -64,6 +61,61 @@ class Picture:
         return f"<Picture of {len(self.artists)} artists: {self.artists!r}>"
 
 
-def _root(figure: Any) -> Any:
-    """The figure itself, of a part of one too."""
-    return figure if hasattr(figure, "savefig") else _root(figure.figure)
+def save(
+    figure: Any,
+    path: str | PathLike[str],
+    dpi: float | None = None,
+    *,
+    overwrite: bool = False,
+    **options: Any,
+) -> Path:
+    """Write a figure or animation to a file, in the format of its suffix; missing folders are created.
+
+    figure  a matplotlib Figure or what a function of `desaxe.plot` returns (.png, .svg, .pdf), or an
+            animation (.gif, .html)
+    dpi     dots per inch; by default 150, and 80 of an animation
+    overwrite  replace a file that desaxe did not write
+    options  of matplotlib's `savefig`, such as `transparent=True`; an animation's `save`, such as `writer`
+
+    A file appears whole or not at all. Returns its path. Raises FileExistsError for a file without the mark
+    that pictures of desaxe have in their metadata (.png, .svg, .pdf, .ps, .eps, .gif, .html).
+    """
+    target = Path(path)
+    with write_whole(target, overwrite) as staged:
+        if hasattr(figure, "to_jshtml"):
+            _save_animation(figure, staged, dpi or 80.0, options)
+        else:
+            field = SIGNED.get(target.suffix.lower())
+            if field is not None:
+                options["metadata"] = {field: "desaxe", **options.get("metadata", {})}
+            _figure_of(figure).savefig(staged, dpi=dpi or 150.0, **options)
+    return target
+
+
+def _figure_of(artists: Any) -> Any:
+    """The figure of a picture, of axes, or of the first of several; TypeError for anything else."""
+    first = artists
+    while isinstance(first, (Mapping, Sequence)):
+        first = next(iter(first.values() if isinstance(first, Mapping) else first), None)
+    figure = first if hasattr(first, "savefig") else getattr(first, "figure", None)
+    if not hasattr(figure, "savefig"):
+        raise TypeError(f"save: {type(artists).__name__}: expected a figure, or what desaxe.plot returns")
+    return figure
+
+
+def _save_animation(animation: Any, path: Path, dpi: float, options: Mapping[str, Any]) -> None:
+    with IMPORTS:
+        from matplotlib import rc_context
+        from matplotlib.animation import PillowWriter
+
+    if options:
+        animation.save(path, dpi=dpi, **options)
+    elif path.suffix == ".gif":
+        animation.save(path, writer=PillowWriter(fps=1000.0 / animation._interval), dpi=dpi)
+    elif path.suffix == ".html":
+        with rc_context({"savefig.dpi": dpi, "animation.embed_limit": 200.0}):
+            path.write_text(f"{PAGE}\n{animation.to_jshtml()}", encoding="utf-8")
+    else:
+        raise ValueError(f"{path.suffix!r}: an animation is written as .gif or .html")
+    if path.suffix == ".gif":
+        path.write_bytes(path.read_bytes().removesuffix(b";") + GIF_COMMENT + b";")

@@ -2,21 +2,17 @@
 
 from collections.abc import Mapping
 from math import degrees
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.quantity_units import UnitSystem
 from ..mechanism.read import number_of, read
-from ..support.extras import needed
 from ..support.shown import shown
 from .picture import Picture
-from .shared import BLUE, ORANGE, finish, raised
+from .style import BLUE, ORANGE, axes_of, finish, head, raised
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-WIDTH, HEIGHT = 7.6, 0.42  # inches: of all, of a bar
+WIDTH, BAR = 7.6, 0.42  # inches: of all, the height of a bar
 
 
 def tornado(
@@ -26,7 +22,7 @@ def tornado(
     name: str = "",
     units: str | Mapping[str, str] | UnitSystem | None = None,
     title: str | None = None,
-    ax: "Axes | None" = None,
+    ax: Any = None,
 ) -> Picture:
     """Draw what a change of each input does to a quantity, by its exact sensitivities; a Picture of the bars.
 
@@ -41,32 +37,27 @@ def tornado(
     To first order: each bar ends at value -+ slope times change, orange where the input is larger, blue where
     it is smaller. Raises ValueError for a change of an input whose slope the result does not have.
     """
-    with needed("plot.tornado"):
-        from matplotlib.figure import Figure
     if not isinstance(changes, Mapping):
         raise TypeError(f"changes = {shown(changes)}: expected a dict input -> half its range")
+    axes = axes_of("tornado", ax, (WIDTH, 1.5 + BAR * len(changes)))
     system = UnitSystem.read(getattr(result, "system", None) if units is None else units)
     value, slopes = _value_and_slopes(result, changes)
-    steps = {p: abs(_number(p, change, system)) for p, change in changes.items()}
-    order = sorted(steps, key=lambda p: abs(slopes[p]) * steps[p])
-    if ax is None:
-        size = (WIDTH, 1.5 + HEIGHT * len(order))
-        ax = Figure(figsize=size, layout="constrained").add_subplot()
-    rows = range(len(order))
-    moves = [slopes[p] * steps[p] for p in order]
+    moves = {p: slopes[p] * abs(_number(p, change, system)) for p, change in changes.items()}
+    order = sorted(moves, key=lambda p: abs(moves[p]))
     bars = [
-        ax.barh(rows, [sign * move for move in moves], left=value, color=colour, height=0.65, label=told)
-        for sign, colour, told in ((1.0, ORANGE, "input larger"), (-1.0, BLUE, "input smaller"))
-    ]
-    ax.set_yticks(rows, [f"{p} ± {_text(p, changes[p], system)}" for p in order])
-    ax.axvline(value, color="0.2", linewidth=1.0)
-    ax.set_xlabel(_label(name, system))
-    ax.locator_params(axis="x", nbins=6)
-    finish(ax, "x", ("top", "right", "left"))
-    ax.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    title = value_text(result, name, system) if title is None else title
-    ax.set_title(title, loc="left", fontsize="medium")
-    return Picture(ax, bars)
+        axes.barh(range(len(order)), [sign * moves[p] for p in order], left=value, color=colour, height=0.65,
+                  label=label)
+        for sign, colour, label in ((1.0, ORANGE, "input larger"), (-1.0, BLUE, "input smaller"))
+    ]  # fmt: skip
+    axes.set_yticks(range(len(order)), [f"{p} ± {_text(p, changes[p], system)}" for p in order])
+    axes.axvline(value, color="0.2", linewidth=1.0)
+    unit = raised(system.of(name).unit) if name else ""
+    axes.set_xlabel(f"{quantity(name).meaning}, {name} {unit}".rstrip() if name else "value")
+    axes.locator_params(axis="x", nbins=6)
+    finish(axes, "x", ("top", "right", "left"))
+    axes.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    head(axes, value_text(result, name, system) if title is None else title)
+    return Picture(axes, bars)
 
 
 def _value_and_slopes(result: Any, changes: Mapping[str, Any]) -> tuple[float, dict[str, float]]:
@@ -84,13 +75,13 @@ def _value_and_slopes(result: Any, changes: Mapping[str, Any]) -> tuple[float, d
 def value_text(result: Mapping[str, Any], name: str, system: UnitSystem) -> str:
     """The value of a dict with its unit, and the angle at which it is reached."""
     unit = raised(system.of(name).unit)[1:-1] if name else ""
-    told = f"{name or 'value'} = {_scalar(result['value']):.6g} {unit}".rstrip()
+    words = f"{name or 'value'} = {_scalar(result['value']):.6g} {unit}".rstrip()
     if "theta" not in result:
-        return told
+        return words
     angle = result["theta"]
-    said = isinstance(angle, str) or hasattr(angle, "magnitude")
-    theta = degrees(read(INPUTS["theta"], angle, "tornado") if said else system.of("theta").to_si(angle))
-    return f"{told} at theta = {theta:.4g} deg"
+    with_unit = isinstance(angle, str) or hasattr(angle, "magnitude")
+    theta = read(INPUTS["theta"], angle, "tornado") if with_unit else system.of("theta").to_si(angle)
+    return f"{words} at theta = {degrees(theta):.4g} deg"
 
 
 def _scalar(value: Any) -> float:
@@ -98,12 +89,6 @@ def _scalar(value: Any) -> float:
         return float(value)
     except TypeError:
         raise ValueError("a tornado is of one design: choose it first, dataset.sel(...)") from None
-
-
-def _label(name: str, system: UnitSystem) -> str:
-    if not name:
-        return "value"
-    return f"{quantity(name).meaning}, {name} {raised(system.of(name).unit)}".rstrip()
 
 
 def _number(parameter: str, change: Any, system: UnitSystem) -> float:
@@ -122,5 +107,4 @@ def _number(parameter: str, change: Any, system: UnitSystem) -> float:
 def _text(parameter: str, change: Any, system: UnitSystem) -> str:
     if not isinstance(change, (int, float)):
         return str(change)
-    unit = system.of(parameter).unit
-    return f"{abs(change):.4g}" + (f" {raised(unit)[1:-1]}" if unit != "1" else "")
+    return f"{abs(change):.4g} {raised(system.of(parameter).unit)[1:-1]}".rstrip()

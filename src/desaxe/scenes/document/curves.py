@@ -44,7 +44,7 @@ def curves(content: Content, run: Run, units: UnitSystem, elsewhere: Sequence[st
 def _on_motor(result: MotorResult, branch: int, units: UnitSystem) -> list[Block]:
     """The first design's speed and torque over a period."""
     with IMPORTS:
-        from ...plot.steady import steady as draw
+        from ...plot import steady as draw
 
     asked = result.asked
     first: dict[str, Any] = {n: v[0] for n, v in asked.axes.items()}

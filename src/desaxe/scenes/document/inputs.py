@@ -92,14 +92,12 @@ def mechanism(content: Content, units: UnitSystem) -> Section | None:
     if any(name not in content.inputs for name in LENGTHS):
         return None
     with IMPORTS:
-        from ...plot.mechanism import label_lengths
-        from ...plot.mechanism import mechanism as draw
+        from ...plot.mechanism import sketched
 
     designs = designs_of(content, units)
     lengths = {name: designs[0].inputs[name] for name in LENGTHS}
     angle = _angle(lengths, content.branch)
-    picture = draw(theta=angle, branch=content.branch, **lengths)
-    label_lengths(picture.axes, units.of("ec"))
+    picture = sketched(angle, lengths, content.branch, units)
     words = f"The mechanism to scale at theta = {with_unit(units, 'theta', angle)}"
     words += f", {designs[0].words}" if designs[0].words else ""
     columns = [_geometry({n: one.inputs[n] for n in LENGTHS}, content.branch, units) for one in designs]
