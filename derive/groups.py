@@ -12,6 +12,7 @@ class Group(NamedTuple):
     what: str
     outputs: tuple[str, ...]
     fixed: tuple[tuple[str, float], ...] = ()  # inputs that do not matter here
+    two_forms: bool = True  # shorter formulas for wide margins; beside arc tangents they save nothing
 
 
 LENGTHS = PARAMETERS[:4]
@@ -36,6 +37,7 @@ GROUPS = (
         "position of the slider and angles of the rod",
         ("Y", "s", *ROD_ANGLES, "margin", "status"),
         (("omega0", 0.0), ("alpha", 0.0)),
+        two_forms=False,
     ),
     Group("motion", "position, velocity and acceleration of the slider", KINEMATICS),
     Group(
@@ -50,6 +52,7 @@ GROUPS = (
             *(*ROD_ANGLES, *ROD_RATES),
             *(name for quantity in (*ROD_ANGLES, *ROD_RATES) for name in first(quantity)),
         ),
+        two_forms=False,
     ),
     Group(
         "forces",

@@ -38,8 +38,8 @@ def _module(derivation: Derivation, group: Group) -> list[object]:
     module, docstring = module_of(derivation, group, "")
     text = emit_folder({group.name: (module, docstring)}, "", derivation.trigonometry)[group.name]
     seconds = f"{perf_counter() - start:.2f}"
-    programs = module.forms.stable, module.forms.plain
-    sizes = [cost_of(program).operations for program in programs if program is not None]
+    programs = module.forms.stable, module.forms.plain or module.forms.stable
+    sizes = [cost_of(program).operations for program in programs]
     return [group.name, seconds, len(text.splitlines()), len(group.outputs), *sizes]
 
 

@@ -187,12 +187,10 @@ def module_of(derivation: Derivation, group: Group, digest: str) -> tuple[Module
     names = [name for name in stable.inputs if name != "branch"]
     test = optimise(keep_outputs(derivation.program, ("wide_margins",)))
     own = [name for name in names if name not in test.inputs]  # a design that passes has good lengths
-    forms = Forms(
-        group.outputs.index("status") if "status" in group.outputs else -1,
-        guard_inputs(stable, names, LEAST, {}),
-        guard_inputs(plain, own, LEAST, {}),
-        test,
-    )
+    status = group.outputs.index("status") if "status" in group.outputs else -1
+    forms = Forms(status, guard_inputs(stable, names, LEAST, {}))
+    if group.two_forms:
+        forms = forms._replace(plain=guard_inputs(plain, own, LEAST, {}), test=test)
     module = Module(
         name=group.name,
         head=(),
@@ -206,26 +204,25 @@ def module_of(derivation: Derivation, group: Group, digest: str) -> tuple[Module
         centres=centres,
         functions=False,
     )
-    return module, _head(derivation, group, stable, plain, digest)
+    return module, _head(group, module, digest)
 
 
-def _head(derivation: Derivation, group: Group, stable: Program, plain: Program, digest: str) -> str:
+def _head(group: Group, module: Module, digest: str) -> str:
     """The docstring of a module of kernels."""
-    size = f"{cost_of(stable).operations} operations, {cost_of(plain).operations} where margins are wide"
-    banner = _banner(f"{group.what[0].upper()}{group.what[1:]}.", digest, size)
-    rows = []
-    for name in (*stable.inputs, *stable.outputs):
-        unit, meaning = _meaning(derivation, name)
-        rows.append(f"    {name:16} {f'[{unit}] ' if unit != '1' else ''}{meaning}")
-    inputs, outputs = rows[: len(stable.inputs)], rows[len(stable.inputs) :]
-    return "\n".join([banner, _USE, "", *inputs, "", "Results:", "", *outputs, ""])
+    plain = module.forms.plain
+    size = f"{cost_of(module.forms.stable).operations} operations"
+    size += f", {cost_of(plain).operations} where margins are wide" if plain else ""
+    rows = [f"    {s.name:10} {f'[{s.unit}] ' if s.unit != '1' else ''}{s.meaning}" for s in module.inputs]
+    branch = "    branch     +1 or -1: the assembly"
+    what = f"{group.what[0].upper()}{group.what[1:]}."
+    return "\n".join([_banner(what, digest, size), _USE, "", *rows, branch, ""])
 
 
 _USE = """    point(...)      numbers to a tuple of OUTPUTS, also inside of an @njit function
     evaluate(...)   arrays that broadcast, to a dict of arrays
     grid(...)       one dimension for each input of one dimension, in the order of the inputs
 
-What has no value is NaN. SI units and radians:"""
+What has no value is NaN. A line of formulas says: unit | meaning | paper equation. SI units and radians:"""
 
 
 def _meaning(derivation: Derivation, name: str) -> tuple[str, str]:
@@ -233,8 +230,8 @@ def _meaning(derivation: Derivation, name: str) -> tuple[str, str]:
     row = INPUTS.get(name)
     if row is not None:
         return row.unit, row.meaning
-    note = derivation.program.notes.get(name)
-    return ("1", "+1 or -1: the assembly") if note is None else (note.unit, note.meaning)
+    note = derivation.program.notes[name]
+    return note.unit, note.meaning
 
 
 def _cut(program: Program, outputs: tuple[str, ...]) -> Program:

@@ -50,7 +50,7 @@ def test_each_module_has_its_seconds_and_sizes():
         assert float(seconds) > 0.0
         assert (int(size), int(results)) == (len(text.splitlines()), len(group.outputs))
         stable, plain = map(int, operations)
-        assert plain < stable
+        assert plain < stable if group.two_forms else plain == stable
 
 
 def test_the_whole_program_comes_first():

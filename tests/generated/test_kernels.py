@@ -18,6 +18,7 @@ from desaxe.derive.write import module_of
 from desaxe.generated.program import law
 
 import desaxe as dx
+from desaxe.compiler.program import Line, Program
 from desaxe.compiler.lowering import Limits, guarded_for_loops, nest_of_two_forms
 from desaxe.mechanism.constants import constants
 from desaxe.mechanism.program import _text
@@ -103,15 +104,18 @@ def test_both_ways_to_machine_code_have_the_same_bits(group):
     columns = {n: columns[n] for n in (symbol.name for symbol in module.inputs)}
     stable, plain = (
         guarded_for_loops(program, (), Limits({}), constants())
-        for program in (module.forms.stable, module.forms.plain)
+        for program in (module.forms.stable, module.forms.plain or module.forms.stable)
     )
     kernel = nest_of_two_forms(
-        plain, stable, module.forms.test, len(group.outputs), dict.fromkeys(columns, 0), 1
+        plain, stable, module.forms.test or WIDE, len(group.outputs), dict.fromkeys(columns, 0), 1
     )
     outs = [np.empty(count, module_kind(group, name)) for name in group.outputs]
     CompiledKernel(kernel).run(columns | {"branch": 1.0}, outs)
     for name, found, bits in zip(group.outputs, evaluate(group.name, **columns).values(), outs, strict=True):
         np.testing.assert_array_equal(found, bits, err_msg=name)
+
+
+WIDE = Program(("ec",), (Line("wide", "lt", ("ec", -inf)),), ("wide",), {})  # never: the stable form alone
 
 
 def module_kind(group, name):
@@ -200,6 +204,19 @@ def test_a_grid_a_point_and_a_loop_of_ones_own_give_what_arrays_give(group):
         for index in [(0, 0), (3, 1), (5, 2), (6, 3)]:
             point = module.point(**numbers | {name: float(mesh[index]) for name, mesh in meshes.items()})
             np.testing.assert_array_equal(point, [expected[name][index] for name in OUTPUTS[group]])
+
+
+def test_a_centre_of_mass_halfway_along_its_link_has_no_dimension_of_a_grid():
+    from desaxe.generated.forces import grid
+
+    rest = {"theta": 1.0, "ec": 0.01, "omega0": 10.0, "m_rod": 2.0} | dict.fromkeys(("m_crank", "m_slider"), 1.0)
+    rest |= dict.fromkeys(("I_crank", "I_rod", "alpha"), 0.1)
+    AB, BC = np.array([0.1, 0.12, 0.13]), np.array([0.4, 0.5])
+    found = grid(AB=AB, BC=BC, **rest)["T_in"]
+    for k, index in enumerate(np.ndindex(3, 2)):
+        a, b = AB[index[0]], BC[index[1]]
+        right = dx.evaluate("T_in", AB=a, BC=b, r_crank=a / 2, r_rod=b / 2, **rest)
+        assert found.shape == (3, 2) and found.flat[k] == pytest.approx(right, rel=1e-12)
 
 
 def test_a_point_is_called_from_a_loop_of_ones_own():

@@ -153,7 +153,15 @@ def module_text(docstring: str, *groups: Parts) -> str:
     texts = dict.fromkeys(text.strip("\n") for group in groups for text in group.texts)
     future = [_FUTURE] if "Any" in words else []
     head = [f'"""{docstring}"""', *("\n".join(block) for block in (future, *blocks) if block)]
-    return "\n\n\n".join(["\n\n".join(head), *texts]) + "\n"
+    rows = ["\n\n".join(head)]
+    for before, text in zip(["def", *texts], texts, strict=False):
+        rows.append("\n" if _is_constant(before) and _is_constant(text) else "\n\n\n")
+        rows.append(text)
+    return "".join(rows) + "\n"
+
+
+def _is_constant(text: str) -> bool:
+    return not text.startswith(("def", "@", "#"))
 
 
 def _import(module: str, names: Sequence[str]) -> str:

@@ -328,7 +328,7 @@ def test_fixed_values_are_folded_in(tmp_path):
     text = dx.compile(SCENES["one_axis"], tmp_path / "m.py").read_text(encoding="utf-8")
     assert "def point(theta):" in text
     assert "def evaluate(theta, out=None, threads=None):" in text
-    assert "ec" not in text[text.index("def formulas(theta, sin_theta, cos_theta):") :].split()
+    assert "ec" not in text[text.index("def stable(theta, sin_theta, cos_theta, branch):") :].split()
     assert "AB *" not in text
 
 

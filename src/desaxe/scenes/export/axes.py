@@ -30,12 +30,19 @@ def axes_text(axes: Mapping[str, Sequence[float]]) -> str:
     return "\n".join(["# The scene's axes, the outermost first.", "AXES = {", *rows, "}"])
 
 
+def arguments_of(axes: Iterable[str]) -> list[str]:
+    """The parameters of a function whose axes may be given in place of the scene's."""
+    return ["*", *(f"{name}=None" for name in axes), "threads=None"]
+
+
 def axis_rows(name: str, values: Sequence[float], indent: str, width: int) -> list[str]:
     """The entry of an axis in a table: its rule, or its values in rows of a width."""
     rule = rule_of(values)
     if rule:
         return [f'{indent}"{name}": {rule},']
     rows = [f"{indent}    {row}" for row in number_rows(values, width)]
+    if len(rows) == 1:
+        return [f'{indent}"{name}": array([{rows[0].strip(" ,")}]),']
     return [f'{indent}"{name}": array([', *rows, f"{indent}]),"]
 
 

@@ -12,7 +12,6 @@ from numpy import (
     arcsinh,
     argmax,
     array,
-    ascontiguousarray,
     broadcast_to,
     concatenate,
     empty,
@@ -46,14 +45,11 @@ def spaced(first, rest, step, num):
 
 def with_axes(axes, inputs):
     """The axes, those that are given in their places: arrays of one dimension in the same order."""
-    axes = dict(axes)
-    for name, values in inputs.items():
-        if values is not None:
-            column = column_of(name, values)
-            if column.ndim > 1:
-                raise ValueError(f"{name}: expected a number or one dimension, got the shape {column.shape}")
-            axes[name] = ascontiguousarray(column.reshape(-1))
-    return axes
+    given = columns_of({n: value for n, value in inputs.items() if value is not None}, axes, ())
+    for name, column in given.items():
+        if column.ndim > 1:
+            raise ValueError(f"{name}: expected a number or one dimension, got the shape {column.shape}")
+    return {name: given[name].reshape(-1) if name in given else values for name, values in axes.items()}
 
 
 # ---- reductions -------------------------------------------------------------------------------------
@@ -133,25 +129,33 @@ def root_mean_square(rows, count):
 # ---- peaks ------------------------------------------------------------------------------------------
 
 
-def extremum(search, kind, ends, axes, fixed, inputs, slopes, threads):
-    """The peaks of all designs, over axes."""
-    shape = tuple(axis.size for axis in axes.values())
-    size = prod(shape)
-    columns = {name: broadcast_to(value, size) for name, value in fixed.items()}
-    for place, (name, axis) in enumerate(axes.items()):
-        along = axis.reshape([-1 if k == place else 1 for k in range(len(shape))])
-        columns[name] = broadcast_to(along, shape).reshape(-1)
+def extremum(search, kind, ends, axes, given, inputs, slopes):
+    """The peaks of all designs, as arrays over the axes: `value`, `theta` where it is, `status`, derivatives.
+
+    The status is 0, or 4 for bad input; ValueError for a design that stalls or cannot turn fully.
+
+    axes     arrays of the scene, and its inputs that are numbers
+    given    the axes that take the place of the scene's, or None, and `threads`
+    inputs   the names that the search takes
+    slopes   name -> the index of the derivative in what the search gives, 0 without one
+    """
+    axes, columns = with_axes(axes, given), {}
+    varied = [name for name in axes if name in given]
+    shape = tuple(axes[name].size for name in varied)
+    for name, value in axes.items():
+        along = [-1 if name == axis else 1 for axis in varied]
+        columns[name] = broadcast_to(array(value).reshape(along), shape).flatten()
     require_turning(columns, *ends)
-    designs = array([columns.get(name, zeros(size)) for name in inputs]).reshape(len(inputs), size)
-    nodes = nodes_between(*ends)
-    sine, cosine = empty(nodes.size), empty(nodes.size)
-    sines(nodes, sine, cosine)
-    theta, out = empty(size), empty((1 + max(1, *slopes.values()), size))
+    size, nodes = prod(shape), nodes_between(*ends)
+    designs = tuple(columns[name] if name in columns else zeros(size) for name in inputs)
+    turns, theta = empty((2, nodes.size)), empty(size)
+    out = tuple(empty((1 + max([1, *slopes.values()]), size)))
+    sines(nodes, turns[0], turns[1])
 
     def work(first, last):
-        search(nodes, sine, cosine, kind, designs, first, last, theta, out)
+        search(kind, nodes, turns, designs, first, last, theta, out)
 
-    in_parts(work, size, 1_000 * size, threads)
+    in_parts(work, size, 1_000 * size, given["threads"])
     value = abs(out[0]) if kind == 0 else out[0]
     sign = where(out[0] < 0.0, -1.0, 1.0) if kind == 0 else 1.0
     found = {"value": value, "theta": theta, "status": where(isfinite(value), 0, 4).astype(int8)}

@@ -8,12 +8,12 @@ from ...compiler.languages.numba.library import grid_text
 from ...compiler.languages.protocol import Module
 from ..content import Content
 from ..scene import Scene
-from .axes import axes_text
+from .axes import arguments_of, axes_text
 from .peaks import carried, left_out_of_module, peak_texts
 from .portable import Order, module_of
 
 HERE = Path(__file__).parent
-FILES = HERE / "functions.py", HERE / "peak_steps.py"
+FUNCTIONS, STEPS = HERE / "functions.py", HERE / "peak_steps.py"
 _NUMPY = ("array", "empty", "fmax", "linspace")
 IMPORTS = {**MATH, **dict.fromkeys(_NUMPY, "numpy"), "njit": "numba", "uint64": "numpy"}
 
@@ -33,7 +33,8 @@ def numba_module_of(scene: Scene, order: Order) -> Module:
     texts = [axes_text(axes), _run(module, content, axes)] if axes else [_FIXED]
     uses = ["    run()           the scene's own grid; run(theta=...) with other axes"]
     searches, lines = peak_texts(peaks, module, names)
-    more = with_sources([*texts, *searches], FILES, imports=IMPORTS)
+    search = with_sources(searches, [STEPS], "@inner\n", IMPORTS)
+    more = with_sources([*texts, *search.texts], [FUNCTIONS], imports=search.imports)
     return module._replace(more=more, uses=(*uses, *lines))
 
 
@@ -43,25 +44,16 @@ _FIXED = '''def run():
 '''
 
 
-def arguments_of(axes: Sequence[str]) -> list[str]:
-    """The parameters of a function whose axes may be given in place of the scene's."""
-    return ["*", *(f"{name}=None" for name in axes), "threads=None"]
-
-
-def passed(axes: Sequence[str]) -> str:
-    """The axes that are given, as a dict."""
-    return "{" + ", ".join(f'"{name}": {name}' for name in axes) + "}"
-
-
 def _run(module: Module, content: Content, axes: Mapping[str, Sequence[float]]) -> str:
     """`run()`: the results over the scene's axes, or over others, reduced where the scene says so."""
-    grid = grid_text(module, "axes")
     fused = content.fused
+    inputs = '{**axes, "threads": threads, **FIXED}' if module.fixed else '{**axes, "threads": threads}'
+    grid = grid_text(module, inputs)
     if fused is not None:
         ordered = [*(n for n in axes if n != fused.axis), fused.axis]
-        told = f"{fused.axis} reduced. `_skipped`: how many points along it have no value."
+        how = f"{fused.axis} reduced. `_skipped`: how many points along it have no value."
         body = [
-            f"axes = with_axes({{name: AXES[name] for name in {quoted(tuple(ordered))}}}, {passed([*axes])})",
+            f"axes = with_axes({{name: AXES[name] for name in {quoted(tuple(ordered))}}}, locals())",
             "",
             "def values(axes):",
             f"    return {grid}",
@@ -69,20 +61,20 @@ def _run(module: Module, content: Content, axes: Mapping[str, Sequence[float]]) 
             f"return reduced(values, axes, {quoted(fused.axis)}, {quoted(tuple(fused.kinds))})",
         ]
     else:
-        told = "one dimension for each. An axis that is given takes the place of the scene's."
-        places = {
+        how = "one dimension for each. An axis that is given takes the place of the scene's."
+        indices = {
             name: tuple(k for k, axis in enumerate(axes) if axis not in taken)
             for name, taken in module.arguments.items()
         }
         body = [
-            f"axes = with_axes(AXES, {passed([*axes])})",
+            "axes = with_axes(AXES, locals())",
             f"out = {grid}",
             *(
                 f'out["{name}"] = fmax.reduce(out["{name}"], axis={along}, initial=nan)  # all the same'
-                for name, along in places.items()
+                for name, along in indices.items()
                 if along
             ),
             "return out",
         ]
-    body = [f'"""The results over {" x ".join(axes)}: {told}"""', *body]
-    return function_text("run", arguments_of([*axes]), body)
+    body = [f'"""The results over {" x ".join(axes)}: {how}"""', *body]
+    return function_text("run", arguments_of(axes), body)

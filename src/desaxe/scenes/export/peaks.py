@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...compiler.builder import function_text, quoted
-from ...compiler.languages.numba.library import search_text
+from ...compiler.languages.numba.library import curve_text
 from ...compiler.languages.protocol import Module
 from ...evaluation.arrays import as_array
 from ...mechanism.catalogue import has, quantity
@@ -24,7 +24,7 @@ from ...peaks.designs import KINDS, PeakPlan, plan_of
 from ...sweeps.peak_step import WORDS
 from ..content import Content
 from ..parts.extremes import Peak, columns_of, group_names
-from .axes import axis_rows
+from .axes import arguments_of, axis_rows
 from .portable import left_out
 
 
@@ -94,12 +94,12 @@ def peak_texts(
     """The searches and functions of peaks, and a line on each."""
     known = [symbol.name for symbol in module.outputs]
     known += [name for name in names if name not in known]
-    searches = {one.names: one for one in peaks}
+    searches = dict.fromkeys(one.names for one in peaks)
     called = {names: f"{names[0]}_{k}" if k else names[0] for k, names in enumerate(searches)}
     texts = [
         text
         for names, name in called.items()
-        for text in search_text(module, name, [known.index(each) for each in names])
+        for text in curve_text(module, name, [known.index(each) for each in names])
     ]
     functions = [_function(one, called[one.names], module) for one in peaks]
     return [*texts, *functions], [f"    {one.name}(): {_meaning(one)}" for one in peaks]
@@ -116,27 +116,20 @@ def _meaning(one: ExportedPeak) -> str:
 def _function(one: ExportedPeak, search: str, module: Module) -> str:
     axes = one.peak.axes
     over = " x ".join(f"{name} [{INPUTS[name].unit}]" for name in axes) or "nothing"
-    told = _meaning(one)
     inputs = [*(symbol.name for symbol in module.inputs), *module.fixed]
-    designs = [name for name in inputs if name != "theta"]
+    designs = tuple(name for name in inputs if name != "theta")
+    meaning, ends = _meaning(one), tuple(map(float, one.peak.theta))
     body = [
-        f'"""{told[0].upper()}{told[1:]}.',
-        "",
-        f"Arrays over {over}: `value`, `theta` where it is, `status` (0, or 4 for bad input), derivatives.",
-        "An axis that is given takes the place of the scene's. ValueError for a design that stalls or cannot",
-        'turn fully."""',
+        f'"""{meaning[0].upper()}{meaning[1:]}, as arrays over {over}: see `extremum`."""',
         "axes = {",
         *(row for name, values in axes.items() for row in axis_rows(name, values, "    ", 80)),
+        *([f"    **{quoted(one.fixed)},"] if one.fixed else []),
         "}",
-        "axes = with_axes(axes, {" + ", ".join(f'"{name}": {name}' for name in axes) + "})",
-        f"fixed = {quoted(one.fixed)}",
-        f"slopes = {quoted(one.slopes)}",
-        f"ends = {tuple(map(float, one.peak.theta))!r}",
-        f"kind, inputs = {KINDS.index(one.peak.kind)}, {quoted(tuple(designs))}",
-        f"return extremum(search_{search}, kind, ends, axes, fixed, inputs, slopes, threads)",
+        f"kind, ends = {KINDS.index(one.peak.kind)}, {ends}",
+        f"inputs, slopes = {quoted(designs)}, {quoted(one.slopes)}",
+        f"return extremum(search_{search}, kind, ends, axes, locals(), inputs, slopes)",
     ]
-    parameters = ["*", *(f"{name}=None" for name in axes), "threads=None"]
-    return function_text(one.name, parameters, body)
+    return function_text(one.name, arguments_of([*axes]), body)
 
 
 def left_out_of_module(content: Content) -> list[str]:

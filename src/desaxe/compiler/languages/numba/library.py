@@ -1,75 +1,53 @@
 """A numba module that people import and keep: `point` of numbers, `evaluate` of arrays, `grid` of axes.
 
 The formulas stand in it once, in straight lines, as functions that are inlined: `plain` where margins are
-wide, `stable` anywhere, or `formulas` where there is one form. Arrays and grids run them over blocks of
-points, in loops without branches.
+wide, `stable` anywhere, or `stable` alone. Arrays and grids run them over blocks of points, in loops
+without branches, which stand in the helpers (sources/front.py).
+
+Rules that numba's issue tracker teaches: every option is a literal and every helper stands in the module, or
+in the one file beside it (its cache does not see changes elsewhere); ``error_model="numpy"``, so that a
+division by zero is an infinity; no fast-math flag, which would erase the NaN of an infeasible point;
+``nogil=True``, so that threads can share the blocks of an array.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from textwrap import wrap
 
-from ...builder import HELPERS, Parts, function_text, functions_of, module_text, quoted, source_of, words_of
+from ...builder import (
+    HELPERS,
+    MATH,
+    Parts,
+    function_text,
+    module_text,
+    quoted,
+    with_sources,
+    words_of,
+)
 from ...lowering import Limits, guarded_for_loops
 from ...passes.slicing import keep_outputs
 from ...passes.trigonometry import Trigonometry
 from ...program import Line, Program
 from ...text import INDENT, WIDTH, with_short_temporaries, write_lines
-from ..lifted import Lifted, lifted
+from ..lifted import lifted
 from ..protocol import Module, Symbol
 from ..shared import arrays_of, numbers, one_line
-from .module import IMPORTS, NJIT, SOURCES, SPELLINGS, numba_parts
 
+SOURCES = Path(__file__).with_name("sources")
+FRONT, SPELLINGS = SOURCES / "front.py", SOURCES / "spellings.py"
 HELPER_FILE = "_helpers"
-FRONT = SOURCES / "front.py"
-_TURNED = ("rotated_sin", "rotated_cos")  # there, but no functions
-TEST = "has_wide_margins"
-INLINED = '@njit(error_model="numpy", forceinline=True)\n'
+# Where the names come from that stand in the text of Programs and loops.
+IMPORTS = MATH | {
+    "array": "numpy", "empty": "numpy", "float64": "numpy",
+    "floor": "numpy",  # math.floor gives an integer: no vectors
+    "int8": "numpy", "int64": "numpy", "njit": "numba", "types": "numba", "uint64": "numpy",
+}  # fmt: skip
 FORMULAS = {
+    "has_wide_margins": "Whether the shorter formulas hold for a design.",
     "plain": "The values of a point with wide margins.",
     "stable": "The values of any point.",
-    "formulas": "The values of a point.",
 }
-MADE = ("near_sin_cos", "sin_cos", "sines")  # functions that are written from a Program, or around one
-
-# ---- what modules call ------------------------------------------------------------------------------
-
-
-def emit_folder(
-    modules: Mapping[str, tuple[Module, str]], banner: str, constants: Trigonometry
-) -> dict[str, str]:
-    """The texts of modules, each with its docstring, by file, and of the file of helpers that they call."""
-    own = {name: _Writer(module).parts() for name, (module, _) in modules.items()}
-    texts = {text for parts in own.values() for text in parts.texts}
-    called = numba_parts([*_sines(constants).texts, *_front().texts, *texts])
-    helpers = called._replace(texts=tuple(text for text in called.texts if text not in texts))
-    words = frozenset[str]().union(*map(words_of, helpers.texts))
-    front = (name for statement in source_of(FRONT).statements for name in statement.names)
-    names = [*front, *functions_of(HELPERS), *functions_of(SPELLINGS), *MADE, *_TURNED]
-    imports = IMPORTS | dict.fromkeys(names, f".{HELPER_FILE}")
-    texts_of = {
-        name: module_text(docstring, own[name]._replace(imports=imports))
-        for name, (_, docstring) in modules.items()
-    }
-    return texts_of | {HELPER_FILE: module_text(banner, _front(), helpers._replace(words=words))}
-
-
-def _front() -> Parts:
-    front = source_of(FRONT)
-    words = frozenset[str]().union(*(statement.words for statement in front.statements))
-    return Parts(tuple(statement.text for statement in front.statements), words, front.imports)
-
-
-def _sines(constants: Trigonometry) -> Parts:
-    """The functions of an angle, by polynomials and beyond their reach by libm."""
-    lines = (Line("sine", "sin", ("angle",)), Line("cosine", "cos", ("angle",)))
-    program = Program(("angle",), lines, ("sine", "cosine"), {})
-    guarded = guarded_for_loops(program, ["angle"], Limits({}, {"angle": constants.limit}), constants)
-    body = ['"""Sine and cosine by polynomials; NaN beyond what their reduction holds for."""']
-    near = INLINED + function_text("near_sin_cos", ["angle"], [*body, *_statements(guarded)])
-    return numba_parts([near, _SINES.replace("LIMIT", repr(constants.limit))])
-
-
-_SINES = '''@njit(error_model="numpy", forceinline=True)
+_SINES = '''@inlined
 def sin_cos(angle):
     """Sine and cosine of any angle."""
     if fabs(angle) <= LIMIT:
@@ -92,218 +70,164 @@ def sines(angle, sine, cosine):
 '''
 
 
-# ---- searches ---------------------------------------------------------------------------------------
+# ---- files -----------------------------------------------------------------------------------------
 
 
-def grid_text(module: Module, inputs: str) -> str:
-    """The call that computes the outer product of inputs, a dict in the order of dimensions."""
-    writer = _Writer(module)
-    order = "" if module.forms.rounded else ", INPUTS"
-    return f"{writer.grid(inputs)}, 1, None, threads{order})"
+def emit_folder(
+    modules: Mapping[str, tuple[Module, str]], banner: str, constants: Trigonometry
+) -> dict[str, str]:
+    """The texts of modules, each with its docstring, by file, and of the file of helpers that they call."""
+    texts = {name: _Writer(module).texts() for name, (module, _) in modules.items()}
+    helpers = _helpers([text for own in texts.values() for text in own], constants)
+    beside = dict.fromkeys((name for text in helpers.texts for name in _defined(text)), f".{HELPER_FILE}")
+    files = {HELPER_FILE: module_text(banner, helpers)}
+    for name, (_, docstring) in modules.items():
+        files[name] = module_text(docstring, _parts(texts[name], IMPORTS | beside))
+    return files
 
 
-def search_text(module: Module, name: str, places: Sequence[int]) -> list[str]:
-    """`search_<name>`, which finds the extreme value of a result over the first argument, for many designs.
-
-    places   of the value, its derivative by that argument and further derivatives in what formulas give
-
-    It calls what `peak_steps.py` of the scenes' exports has.
-    """
-    writer = _Writer(module)
-    form = next(reversed(writer.forms))
-    angle, others = module.angle, [name for name in writer.inputs if name != module.angle]
-    design = ", ".join(others)
-    taken = [*writer.inputs, *writer.sines, *writer.branch]
-
-    def values(row: str) -> list[str]:
-        cells = [f"{n}{row}" if n == angle or n in writer.sines else n for n in taken]
-        return _wrapped(f"values = {form}(", cells)
-
-    results = [f"values[{place}]" for place in places]
-    sines = [f"{', '.join(writer.sines)} = sin_cos({angle})"] if writer.sines else []
-    curve = [
-        "apart()",
-        f"for i in range(uint64({angle}.size)):",
-        *_indented(1, values("[i]")),
-        f"    value[i], slope[i] = {results[0]}, {results[1]}",
-    ]
-    point = [*sines, *values(""), *_wrapped("return (", results, ",)" if len(results) == 1 else ")")]
-    parameters = [angle, *writer.sines, *others]
-    given = ["nodes", *(f"{part}_nodes" for part in ("sin", "cos") if writer.sines), *others]
-    texts = [
-        NJIT + function_text(f"curve_{name}", [*parameters, "value", "slope"], curve),
-        NJIT + function_text(f"at_{name}", [angle, *others], point),
-    ]
-    rows = [f"{n} = designs[{k}, i]" for k, n in enumerate(others)]
-    search = _SEARCH.replace("@NAME@", name).replace("@DESIGN@", f", {design}" if design else "")
-    search = search.replace("@CURVE@", ", ".join(given)).replace(
-        "        @ROWS@\n", "".join(f"        {row}\n" for row in rows)
-    )
-    return [*texts, search]
+def emit_alone(module: Module, docstring: str) -> str:
+    """The text of a module that needs no other file."""
+    texts = _Writer(module).texts()
+    more = [module.more] if module.more else []
+    behind = [*texts, *(text for part in more for text in part.texts)]
+    return module_text(docstring, _helpers(behind, module.constants), _parts(texts, IMPORTS), *more)
 
 
-_SEARCH = '''@compiled
-def search_@NAME@(nodes, sin_nodes, cos_nodes, kind, designs, first, last, theta, out):
-    """The extreme value of each design: its angle; value, slope and derivatives there."""
-    value, slope = empty(nodes.size), empty(nodes.size)
-    for i in range(first, last):
-        @ROWS@
-        curve_@NAME@(@CURVE@, value, slope)
-        best, theta[i], at_node = -inf, nan, True
-        for j in range(nodes.size):
-            if score(kind, value[j]) > best:
-                best, theta[i] = score(kind, value[j]), nodes[j]
-        for j in range(nodes.size - 1):
-            width = nodes[j + 1] - nodes[j]
-            if not may_hold(kind, best, width, value[j], value[j + 1], slope[j], slope[j + 1]):
-                continue
-            end, before = nodes[j], slope[j]
-            for part in range(4):
-                low, high, after = end, nodes[j + 1], slope[j + 1]
-                if part < 3:
-                    high = nodes[j] + inside(part, slope[j], slope[j + 1]) * width
-                    after = at_@NAME@(high@DESIGN@)[1]
-                end, rises = high, before > 0.0
-                changes = rises != (after > 0.0) and before == before and after == after
-                last_x, last_slope, x, here, size = low, before, high, after, high - low
-                before = after
-                for step in range(100 if changes else 0):
-                    new = next_guess(low, high, x, here, last_x, last_slope, size)
-                    last_x, last_slope, size, x = x, here, abs(new - x), new
-                    here = at_@NAME@(x@DESIGN@)[1]
-                    if (here > 0.0) == rises:
-                        low = x
-                    else:
-                        high = x
-                    if here == 0.0 or size <= 4e-16 * abs(x) or high - low <= 4e-16 * abs(x):
-                        break
-                if changes:
-                    new = score(kind, at_@NAME@(x@DESIGN@)[0])
-                    if new > best + 1e-14 * abs(best) or (at_node and new >= best - 1e-14 * abs(best)):
-                        best, theta[i], at_node = max(new, best), x, False
-        values = at_@NAME@(theta[i]@DESIGN@)
-        for k in range(out.shape[0]):
-            out[k, i] = values[k]
-'''
+def _parts(texts: Sequence[str], imports: Mapping[str, str]) -> Parts:
+    return Parts(tuple(texts), frozenset[str]().union(*map(words_of, texts)), imports)
+
+
+def _helpers(texts: Sequence[str], constants: Trigonometry) -> Parts:
+    """Select the helpers that texts call: decorators and loops first, sines last."""
+    behind = [*texts, sines := _sines(constants)]
+    front = with_sources([*behind, _INNER], [FRONT], imports=IMPORTS)
+    every = with_sources(front.texts, [SPELLINGS, HELPERS], "@inner\n", front.imports)
+    loops = [text for text in front.texts if text not in (*behind, _INNER)]
+    called = [text for text in every.texts if text not in front.texts]
+    return _parts([*loops, *called, sines], every.imports)
+
+
+_INNER = "@inner"  # the decorator of what is called
+
+
+def _defined(text: str) -> Iterable[str]:
+    """The names that a text defines at its top."""
+    rows = [row for row in text.splitlines() if row[:1].isalpha() or row[:1] == "_"]
+    for row in rows:
+        head = row.removeprefix("def ")
+        yield from head.partition("(")[0].split(", ") if head != row else head.partition(" = ")[0].split(", ")
+
+
+def _sines(constants: Trigonometry) -> str:
+    """The functions of an angle, by polynomials and beyond their reach by libm."""
+    lines = (Line("sine", "sin", ("angle",)), Line("cosine", "cos", ("angle",)))
+    program = Program(("angle",), lines, ("sine", "cosine"), {})
+    guarded = guarded_for_loops(program, ["angle"], Limits({}, {"angle": constants.limit}), constants)
+    about = '"""Sine and cosine by polynomials; NaN beyond what their reduction holds for."""'
+    near = "@inlined\n" + function_text("near_sin_cos", ["angle"], [about, *_statements(guarded)])
+    return near + "\n\n" + _SINES.replace("LIMIT", repr(constants.limit))
 
 
 # ---- a module ---------------------------------------------------------------------------------------
 
 
-def emit_alone(module: Module, docstring: str) -> str:
-    """The text of a module that needs no other file."""
-    own = _Writer(module).parts()
-    texts = list(own.texts) + (list(module.more.texts) if module.more else [])
-    called = numba_parts([*_sines(module.constants).texts, *_front().texts, *texts])
-    return module_text(
-        docstring,
-        _front(),
-        called._replace(texts=tuple(t for t in called.texts if t not in texts)),
-        own,
-        *([module.more] if module.more else []),
-    )
+def grid_text(module: Module, inputs: str) -> str:
+    """The call that computes the outer product of inputs, a dict in the order of dimensions."""
+    return _Writer(module).grid(inputs)
 
 
-def _statements(program: Program, several: bool = True) -> list[str]:
+def curve_text(module: Module, name: str, indices: Sequence[int]) -> list[str]:
+    """`curve_<name>` of an angle, its sine and cosine, and a design, and `search_<name>` for many designs.
+
+    indices   of the value, its derivative by the angle and further derivatives in what formulas give
+
+    They call what `peak_steps.py` of the scenes' exports has.
+    """
+    writer = _Writer(module)
+    turns = [f"sin_{module.angle}", f"cos_{module.angle}"]
+    design = [one for one in writer.inputs if one != module.angle]
+    body = [
+        f"values = stable({', '.join([*writer.inputs, *(turns if writer.angle else ()), '1.0'])})",
+        *_wrapped("return (", [f"values[{k}]" for k in indices]),
+    ]
+    search = ["kind", "nodes", "turns", "designs", "first", "last", "angles", "out"]
+    return [
+        "@inlined\n" + function_text(f"curve_{name}", [module.angle, *turns, *design], body),
+        "@compiled\n"
+        + function_text(f"search_{name}", search, [f"search(curve_{name}, {', '.join(search)})"]),
+    ]
+
+
+def _statements(program: Program) -> list[str]:
     program = with_short_temporaries(program)
-    last = "," if several and len(program.outputs) == 1 else ""
-    return [*write_lines(program, "numba"), *_wrapped("return (", program.outputs, f"{last})")]
-
-
-def _mapping(name: str, rows: Mapping[str, str]) -> str:
-    """A constant dict, wrapped."""
-    text = ", ".join(f'"{key}": {value}' for key, value in rows.items())
-    return "\n".join([f"{name} = {{", *(INDENT + row for row in wrap(f"{text},", WIDTH)), "}", ""])
+    return [*write_lines(program, "numba"), *_wrapped("return (", program.outputs)]
 
 
 def _wrapped(head: str, arguments: Iterable[str], tail: str = ")") -> list[str]:
-    """A statement with arguments in parentheses, on one line or wrapped."""
+    """A statement with arguments in parentheses, on one line or wrapped; one alone is a tuple."""
     text = ", ".join(arguments)
+    text += "," if head == "return (" and ", " not in text else ""
     if len(head) + len(text) + len(tail) <= WIDTH:
         return [head + text + tail]
-    rows = [INDENT + row for row in wrap(f"{text},", WIDTH, break_long_words=False)]
-    return [head, *rows, tail.lstrip(",")] if head else ["(", *rows, f"){tail}"]
-
-
-def _indented(depth: int, rows: Iterable[str]) -> list[str]:
-    return [INDENT * depth + row for row in rows]
+    rows = [INDENT + row for row in wrap(f"{text.rstrip(',')},", WIDTH, break_long_words=False)]
+    return [head, *rows, tail]
 
 
 class _Writer:
-    """Writes the parts of a module."""
+    """Writes the texts of a module."""
 
     def __init__(self, module: Module) -> None:
-        self.module = module
-        forms = module.forms
+        self.module, forms = module, module.forms
+        self.count = len(module.outputs)  # what formulas give besides is for other functions
         self.names = [symbol.name for symbol in module.inputs]  # that people give
         self.inputs = [*self.names, *module.fixed]  # of the formulas
-        chosen = [k for k in range(len(forms.stable.outputs)) if k != forms.status or k < self.count]
-        programs = {"plain": forms.plain if forms.test else None, "stable": forms.stable}
-        self.forms: dict[str, Lifted] = {}
-        for name, program in programs.items():
-            if program is not None:
-                short = keep_outputs(program, [program.outputs[k] for k in chosen])
-                self.forms[name] = lifted(short, [module.angle])
-        self.test = forms.test if len(self.forms) == 2 else None
-        if self.test is None:
-            self.forms = {"formulas": self.forms["stable"]}
-        self.turns = {k: v for form in self.forms.values() for k, v in form.turns.items()}
-        self.sines = [name for pair in self.turns.values() for name in pair]
         self.branch = ["branch"] if "branch" in forms.stable.inputs else []
+        indices = [k for k in range(len(forms.stable.outputs)) if k != forms.status or k < self.count]
+        two = forms.plain is not None and forms.test is not None
+        programs = {"plain": forms.plain, "stable": forms.stable} if two else {"stable": forms.stable}
+        lifts = {
+            name: lifted(keep_outputs(program, [program.outputs[k] for k in indices]), [module.angle])
+            for name, program in programs.items()
+            if program is not None
+        }
+        self.forms = {"has_wide_margins": forms.test} if two and forms.test else {}
+        self.forms |= {name: form.program for name, form in lifts.items()}
+        self.angle = module.angle if any(form.turns for form in lifts.values()) else None
+        turns = [f"sin_{self.angle}", f"cos_{self.angle}"] if self.angle else []
+        self.parameters = [*self.inputs, *turns, "branch"]
 
-    @property
-    def count(self) -> int:
-        """The number of results; what the formulas give besides is for other functions."""
-        return len(self.module.outputs)
-
-    @property
-    def open_angle(self) -> str | None:
-        """The argument that people give of which sine and cosine are taken."""
-        return next((angle for angle in self.turns if angle in self.names), None)
-
-    def parts(self) -> Parts:
-        """All parts."""
+    def texts(self) -> list[str]:
+        """All texts."""
         module = self.module
-        texts = [
-            f"INPUTS = {quoted(tuple(self.names))}\n",
-            _mapping("UNITS", {s.name: f'"{s.unit}"' for s in (*module.inputs, *module.outputs)}),
-            _mapping("OUTPUTS", {s.name: self.kind(k) for k, s in enumerate(module.outputs)}),
-            *self.tables(),
-            *([self.condition()] if self.test else []),
-            *(self.formulas(name, form) for name, form in self.forms.items()),
+        units = [f'"{s.name}": "{s.unit}"' for s in (*module.inputs, *module.outputs)]
+        tables = [
+            "\n".join([f"{name} = array([", *(INDENT + row for row in numbers(column)), "])"])
+            for name, column in arrays_of(module.tables).items()
+        ]
+        constants = [
+            f"INPUTS = {quoted(tuple(self.names))}",
+            *_wrapped("OUTPUTS = results(", (f'"{symbol.name}"' for symbol in module.outputs)),
+            *_wrapped("UNITS = {", units, "}"),
+            *([f"HALVES = {quoted(dict(module.centres))}"] if module.centres else []),
+            *([f"FIXED = {quoted(dict(module.fixed))}"] if module.fixed else []),
+            *tables,
+        ]
+        return [
+            "\n".join(constants),
+            *(self.formulas(name, program) for name, program in self.forms.items()),
             self.point(),
             *(self.function(k, symbol) for k, symbol in enumerate(module.outputs) if module.functions),
-            *self.arrays(),
-        ]
-        words = frozenset[str]().union(*map(words_of, texts))
-        return Parts(tuple(texts), words, IMPORTS | {"array": "numpy"})
-
-    def kind(self, place: int) -> str:
-        """The type of an output."""
-        return "int8" if place == self.module.forms.status else "float64"
-
-    def tables(self) -> list[str]:
-        """The tables that are looked into."""
-        return [
-            "\n".join([f"{name} = array([", *_indented(1, numbers(column)), "])", ""])
-            for name, column in arrays_of(self.module.tables).items()
+            *(self.arrays() if self.names else [_WITHOUT_INPUTS]),
         ]
 
-    # -- one point --
-
-    def condition(self) -> str:
-        """The test of a design."""
-        assert self.test is not None
-        body = ['"""Whether the shorter formulas hold for a design."""', *_statements(self.test, False)]
-        return INLINED + function_text(TEST, self.test.inputs, body)
-
-    def formulas(self, name: str, form: Lifted) -> str:
-        """One form of the formulas as a function."""
-        program = form.program
+    def formulas(self, name: str, program: Program) -> str:
+        """One form of the formulas, or the test of a design, as a function."""
         if not self.module.forms.rounded:
             program = guarded_for_loops(program, (), Limits({}), None)
-        body = [f'"""{FORMULAS[name]}"""', *_statements(program)]
-        return INLINED + function_text(name, [*self.inputs, *self.sines, *self.branch], body)
+        rows = _statements(program)
+        rows[-1] = f"return {program.outputs[0]}" if name == "has_wide_margins" else rows[-1]
+        return "@inlined\n" + function_text(name, self.parameters, [f'"""{FORMULAS[name]}"""', *rows])
 
     def signature(self) -> list[str]:
         """The parameters that people give."""
@@ -311,163 +235,83 @@ class _Writer:
         names = [f"{n}={defaults[n]}" if n in defaults else n for n in self.names]
         return [*names, *(f"{name}=1.0" for name in self.branch)]
 
-    def centres(self) -> list[str]:
-        """The lines that put centres of mass halfway along their links."""
-        return [
-            f"{name}_taken = 0.5 * {link} if {name} is None else {name}"
-            for name, link in self.module.centres.items()
-        ]
-
-    def value(self, name: str) -> str:
-        """The text of an input of the formulas."""
-        if name in self.module.fixed:
-            return repr(self.module.fixed[name])
-        return f"{name}_taken" if name in self.module.centres else name
-
-    @property
-    def what(self) -> str:
-        """The results in words, at the start of a sentence."""
-        return self.module.what[0].upper() + self.module.what[1:]
+    def what(self, how: str) -> list[str]:
+        """The docstring of a function."""
+        what = self.module.what
+        return [f'"""{what[0].upper()}{what[1:]}{how}."""']
 
     def point(self) -> str:
         """The function of numbers."""
-        values = [self.value(n) for n in (*self.inputs, *self.sines, *self.branch)]
-        body = [f'"""{self.what} at a point, for your own @njit functions, too."""', *self.centres()]
-        body += [f"{', '.join(pair)} = sin_cos({self.value(a)})" for a, pair in self.turns.items()]
-        if self.test:
-            body.append(f"if {TEST}({', '.join(map(self.value, self.test.inputs))}):")
-        for depth, name in zip((1, 0) if self.test else (0,), self.forms, strict=True):
-            body += _indented(depth, self.returned(name, values))
-        return "@compiled\n" + function_text("point", self.signature(), body)
+        centres = self.module.centres
+        given = {n: repr(value) for n, value in self.module.fixed.items()}
+        given |= {n: f"{n}_taken" for n in centres} | ({} if self.branch else {"branch": "1.0"})
+        values = [given.get(n, n) for n in self.parameters]
+        body = [*self.what(" at a point, for your own @njit functions, too")]
+        body += [f"{n}_taken = 0.5 * {link} if {n} is None else {n}" for n, link in centres.items()]
+        if self.angle:
+            pair = f"sin_{self.angle}, cos_{self.angle}"
+            body.append(f"{pair} = sin_cos({given.get(self.angle, self.angle)})")
+        if "plain" in self.forms:
+            body += [*_wrapped("if has_wide_margins(", values, "):")]
+            body += [INDENT + row for row in self.returned("plain", values)]
+        return "@compiled\n" + function_text(
+            "point", self.signature(), [*body, *self.returned("stable", values)]
+        )
 
     def returned(self, name: str, values: Sequence[str]) -> list[str]:
         """The lines that return the results of a form."""
-        if self.count == len(self.forms[name].program.outputs):
-            return _wrapped(f"return {name}(", values)
-        results = [f"values[{k}]" for k in range(self.count)]
-        return [*_wrapped(f"values = {name}(", values), *_wrapped("return (", results, ",)")]
+        every = self.count == len(self.forms[name].outputs)
+        return _wrapped(f"return {name}(", values, ")" if every else f")[:{self.count}]")
 
-    def function(self, place: int, symbol: Symbol) -> str:
+    def function(self, index: int, symbol: Symbol) -> str:
         """The function of one output."""
         taken = self.module.taken(symbol.name)
         meaning = one_line(symbol.meaning or symbol.name)  # a quantity of a user may come without
-        given = ", ".join(name if name in taken else "nan" for name in self.names)
-        body = [
-            f'"""{meaning[0].upper()}{meaning[1:]} [{symbol.unit}]."""',
-            f"return point({given})[{place}]",
-        ]
-        return "@compiled\n" + function_text(symbol.name, taken, body)
+        passed = ", ".join(name if name in taken else "nan" for name in self.names)
+        about = f'"""{meaning[0].upper()}{meaning[1:]} [{symbol.unit}]."""'
+        return "@compiled\n" + function_text(symbol.name, taken, [about, f"return point({passed})[{index}]"])
 
     # -- arrays --
 
     def arrays(self) -> list[str]:
         """The functions of arrays."""
-        if not self.names:
-            return ['def evaluate():\n    """The values; every input is fixed."""\n'
-                    "    return dict(zip(OUTPUTS, point(), strict=True))\n"]  # fmt: skip
-        broadcasts = "inputs broadcast like NumPy's; numbers give numbers"
-        dimensions = "one dimension for each input of one dimension, in the order of inputs"
+        forms = "has_wide_margins, plain, stable" if "plain" in self.forms else "None, None, stable"
+        angle = self.inputs.index(self.angle) if self.angle else None
+        points = ["columns", "first", "last", "branch", "targets"]
+        rows = ["columns", "first", "last", "length", "branch", "targets"]
+        inputs = "{**locals(), **FIXED}" if self.module.fixed else "locals()"
+        signature = [*self.signature(), "out=None", "threads=None"]
+        broadcasts = " by name: inputs broadcast like NumPy's; numbers give numbers"
+        dimensions = " by name: one dimension for each input of one dimension, in the order of inputs"
+        fill = [f"fill_points({forms}, {angle}, {', '.join(points)})"]
+        fill_rows = [f"fill_grid({forms}, {', '.join(rows)})"]
+        evaluate = [*self.what(broadcasts), f"return broadcast(fill, {self.passed(inputs)})"]
         return [
-            self.block(),
-            self.fill(),
-            *([] if self.module.forms.rounded else [self.fill_rows()]),
-            self.call("evaluate", "broadcast(fill, OUTPUTS, inputs", broadcasts),
-            self.call("grid", self.grid("inputs"), dimensions),
+            "@compiled\n" + function_text("fill", points, fill),
+            *([] if self.as_points else ["@compiled\n" + function_text("fill_rows", rows, fill_rows)]),
+            function_text("evaluate", signature, evaluate),
+            function_text("grid", signature, [*self.what(dimensions), f"return {self.grid(inputs)}"]),
         ]
+
+    @property
+    def as_points(self) -> bool:
+        """True if a grid runs as points: of twice the digits LLVM would duplicate what a row shares."""
+        return self.module.forms.rounded
+
+    def passed(self, inputs: str) -> str:
+        """The arguments of a call that fills arrays."""
+        names = "(*INPUTS, *FIXED)" if self.module.fixed else "INPUTS"
+        return f"{names}, OUTPUTS, {inputs}" + ", HALVES" * bool(self.module.centres)
 
     def grid(self, inputs: str) -> str:
-        """The start of the call that computes the outer product of some inputs.
+        """The call that computes the outer product of some inputs, a dict with `threads`."""
+        if self.as_points:
+            return f"broadcast(fill, {self.passed(f'{{**{inputs}, **meshed({inputs}, INPUTS)[1]}}')})"
+        angle = f'"{self.angle}"' if self.angle else None
+        return f"outer(fill_rows, {angle}, {self.passed(inputs)})"
 
-        With twice the digits, whose lines LLVM would duplicate for what is the same along a row, as points.
-        """
-        if self.module.forms.rounded:
-            return f"broadcast(fill, OUTPUTS, meshed({inputs}, INPUTS)"
-        return f"outer(fill_rows, {quoted(self.open_angle)}, OUTPUTS, {inputs}"
 
-    def passed(self, names: Iterable[str]) -> str:
-        """The arguments of a function, from the values at a point: of columns, sines and branch."""
-        order = [*self.names, *self.sines, *self.branch]
-        texts = {name: f"values[{k}]" for k, name in enumerate(order)}
-        cells = [texts.get(name) or self.value(name) for name in names]
-        return "*values" if cells == [*texts.values()] else ", ".join(cells)
-
-    def block(self) -> str:
-        """The loops over a block of points; a column is an array or a number."""
-        calls = [f"{form}({self.passed([*self.inputs, *self.sines, *self.branch])})" for form in self.forms]
-        loop = ["for i in range(size):", "    values = values_at(columns, i)"]
-        rows = ["apart()", "size = uint64(targets[0].size)"]
-        if len(calls) == 1:
-            about = '"""Fill the outputs of a block."""'
-            rows = [about, *rows, *loop, f"    store(targets, i, {calls[0]})"]
-        else:
-            about = (
-                '"""Fill the outputs of a block: `plain` first, then `stable` where that does not hold."""'
-            )
-            test = f"{TEST}({self.passed(self.test.inputs if self.test else ())})"
-            rows = [
-                *(about, *rows, "count = uint64(0)", *loop),
-                f"    count += uint64(1) if {test} else uint64(0)",
-                f"    store(targets, i, {calls[0]})",
-                *("if count < size:", *_indented(1, loop)),
-                f"        store_unless({test}, targets, i, {calls[1]})",
-            ]
-        return NJIT + function_text("block", ["columns", "targets"], rows)
-
-    def columns(self) -> int:
-        """The number of arrays that a block reads."""
-        return len(self.names) + len(self.sines)
-
-    def fill(self) -> str:
-        """Blocks of columns."""
-        count = len(self.names)
-        rows = [
-            '"""Fill the outputs of points; a column of one number is that of all points."""',
-            f"buffers = empty(({self.columns()}, BLOCK))",
-            "hold(columns, buffers)",
-            *self.fixed_sines(),
-            "for start in range(first, last, BLOCK):",
-            "    size = min(start + BLOCK, last) - start",
-            "    parts = parts_at(columns, buffers, start, size)",
-        ]
-        if self.open_angle:
-            place = self.names.index(self.open_angle)
-            rows.append(f"    turns = buffers[{count}, :size], buffers[{count + 1}, :size]")
-            rows.append(f"    sines(parts[{place}], turns[0], turns[1])")
-        turns = ["turns"] if self.open_angle else self.fixed_turns()
-        columns = " + ".join(["parts", *turns, *(["(branch,)"] if self.branch else [])])
-        rows.append(f"    block({columns}, slices(targets, start, start + size))")
-        return "@compiled\n" + function_text("fill", ["columns", "first", "last", "branch", "targets"], rows)
-
-    def fixed_turns(self) -> list[str]:
-        """The sine and cosine of an angle that is fixed, as a tuple."""
-        return [f"({', '.join(self.sines)})"] if self.sines and not self.open_angle else []
-
-    def fixed_sines(self) -> list[str]:
-        """The line that takes sine and cosine of an angle that is fixed."""
-        fixed = {angle: pair for angle, pair in self.turns.items() if angle in self.module.fixed}
-        return [f"{', '.join(pair)} = sin_cos({self.value(angle)})" for angle, pair in fixed.items()]
-
-    def fill_rows(self) -> str:
-        """Rows of a grid, along which the columns vary that are arrays."""
-        parts = ["rows_at(columns, row)", *self.fixed_turns(), *(["(branch,)"] if self.branch else [])]
-        rows = [
-            '"""Fill rows of a grid: a column is an array along a row, or numbers of rows with a period."""',
-            *self.fixed_sines(),
-            "for row in range(first, last):",
-            f"    block({' + '.join(parts)}, slices(targets, row * length, (row + 1) * length))",
-        ]
-        return "@compiled\n" + function_text(
-            "fill_rows", ["columns", "first", "last", "length", "branch", "targets"], rows
-        )
-
-    def call(self, name: str, road: str, what: str) -> str:
-        """A function of arrays."""
-        inputs = [f'"{n}": {self.value(n)}' for n in self.names]
-        branch = "branch" if self.branch else "1"
-        body = [
-            f'"""{self.what} by name: {what}."""',
-            *self.centres(),
-            *_wrapped("inputs = {", inputs, "}"),
-            f"return {road}, {branch}, out, threads)",
-        ]
-        return function_text(name, [*self.signature(), "out=None", "threads=None"], body)
+_WITHOUT_INPUTS = '''def evaluate():
+    """The values; every input is fixed."""
+    return dict(zip(OUTPUTS, point(), strict=True))
+'''

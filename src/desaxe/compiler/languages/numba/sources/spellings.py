@@ -6,55 +6,44 @@ comparison.
 
 from numba import types
 from numba.extending import intrinsic
+from numpy import float64, int64
 
 
-@intrinsic
-def mul_add(typingctx, a, b, c):
-    """a * b + c, rounded once where the machine can, else twice."""
-
-    def code(context, builder, signature, args):
-        # One instruction for LLVM: a product that it moved out of a loop would not be fused any more.
-        number = args[0].type
-        kind = type(builder.function.ftype)(number, [number] * 3)
-        return builder.call(builder.module.declare_intrinsic("llvm.fmuladd", [number], kind), args)
-
-    return types.float64(types.float64, types.float64, types.float64), code
-
-
-def _turned(quarter):
-    """The sine of an angle and a whole number of quarter turns, and `quarter` more: an intrinsic."""
+def _multiply_add(name):
+    """a * b + c as one instruction: a product that LLVM moved out of a loop would not be fused any more."""
 
     @intrinsic
-    def rotated(typingctx, sine, cosine, quarters):
+    def function(typingctx, a, b, c):
         def code(context, builder, signature, args):
-            sine, cosine, quarters = args
-            integer = context.get_value_type(types.int64)
-            # Beyond 2^52 the last bits of a number are those of the whole number that was added.
-            shift = context.get_constant(types.float64, 1.5 * 2.0**52)
-            bits = builder.bitcast(builder.fadd(quarters, shift), integer)
-            odd = builder.trunc(bits, context.get_value_type(types.boolean))
-            either = (sine, cosine) if quarter else (cosine, sine)
-            value = builder.bitcast(builder.select(odd, *either), integer)
-            turns = builder.add(bits, integer(1)) if quarter else bits
-            sign = builder.shl(builder.lshr(turns, integer(1)), integer(63))
-            return builder.bitcast(builder.xor(value, sign), args[0].type)
+            number = args[0].type
+            kind = type(builder.function.ftype)(number, [number] * 3)
+            return builder.call(builder.module.declare_intrinsic(name, [number], kind), args)
 
         return types.float64(types.float64, types.float64, types.float64), code
 
-    return rotated
+    return function
 
 
-rotated_sin, rotated_cos = _turned(0), _turned(1)
+# The first is rounded once where the machine can, else twice; the second always once.
+mul_add, fused = _multiply_add("llvm.fmuladd"), _multiply_add("llvm.fma")
 
 
-@intrinsic
-def fused(typingctx, a, b, c):
-    """a * b + c, rounded once."""
+def rotated(odd, even, quarters):
+    """The one or the other by the parity of a whole number, with the sign of half of it."""
+    # Beyond 2^52 the last bits of a number are those of the whole number that was added.
+    bits = float64(quarters + 6755399441055744.0).view(int64)
+    value = float64(odd if bits & 1 else even).view(int64)
+    return int64(value ^ (bits >> 1 << 63)).view(float64)
 
-    def code(context, builder, signature, args):
-        return builder.fma(*args)
 
-    return types.float64(types.float64, types.float64, types.float64), code
+def rotated_sin(sine, cosine, quarters):
+    """The sine of an angle and a whole number of quarter turns."""
+    return rotated(cosine, sine, quarters)
+
+
+def rotated_cos(sine, cosine, quarters):
+    """The cosine of an angle and a whole number of quarter turns."""
+    return rotated(cosine, sine, quarters + 1.0)
 
 
 def two_product_error(a, b):
@@ -64,7 +53,7 @@ def two_product_error(a, b):
 
 @intrinsic
 def apart(typingctx):
-    """The promise that what is written to shares no memory with anything else; the widest vectors."""
+    """Mark the arrays that a function takes as separate (noalias), and ask for the widest vectors."""
 
     def code(context, builder, signature, args):
         for argument in context.call_conv.get_arguments(builder.function):
