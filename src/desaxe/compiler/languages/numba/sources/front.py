@@ -23,7 +23,9 @@ from numpy import (
 )
 
 if TYPE_CHECKING:
-    from .spellings import apart
+
+    def apart():
+        """Mark the arrays that a function takes as separate: an intrinsic of `spellings`."""
 
     def sines(angle, sine, cosine):
         """The sines and cosines of a block of angles: written from a Program."""
