@@ -103,16 +103,17 @@ def test_what_does_not_fit_is_refused():
 @pytest.mark.parametrize(
     "load", [None, dx.over_theta(np.sin), dx.over_theta([0.0, 2.0, 4.0], [0.0, -500.0, 0.0])]
 )
-def test_series_of_one_index_vary_together_in_a_grid(load):
+@pytest.mark.parametrize("kind", [pd.Series, lambda *columns: pd.Series(*columns).to_xarray()])
+def test_inputs_of_one_index_or_dimension_vary_together_in_a_grid(kind, load):
     designs = pd.Index(["first", "second"], name="design")
-    ec, AB = pd.Series([0.0, 0.1], designs), pd.Series([0.12, 0.1], designs)
+    ec, AB = (kind(numbers, designs) for numbers in ([0.0, 0.1], [0.12, 0.1]))
     inputs = {"theta": ANGLES, "BC": [0.35, 0.4], "omega0": 10.0, "m_slider": 2.0}
     inputs |= {} if load is None else {"F_Y": load}
     found = dx.grid(["T_in", "a_C"], ec=ec, AB=AB, **inputs)
     assert dict(found.sizes) == {"theta": 5, "BC": 2, "design": 2}
     assert found.ec.dims == found.AB.dims == ("design",)
-    for name in ("first", "second"):
-        alone = dx.grid(["T_in", "a_C"], ec=ec[name], AB=AB[name], **inputs)
+    for k, name in enumerate(designs):
+        alone = dx.grid(["T_in", "a_C"], ec=float(ec.values[k]), AB=float(AB.values[k]), **inputs)
         for variable in ("T_in", "a_C", "status", "margin"):
             here = found[variable].sel(design=name)
             np.testing.assert_allclose(here.transpose(*alone[variable].dims), alone[variable], rtol=1e-12)
@@ -122,7 +123,9 @@ def test_series_of_one_index_vary_together_in_a_grid(load):
     np.testing.assert_allclose(of_machine.a_C.transpose(*found.a_C.dims), 1e3 * found.a_C, rtol=1e-12)
     assert of_machine.ec.values.tolist() == [0.0, 100.0]
     with pytest.raises(TypeError, match="reduce= is for plain arrays"):
-        dx.grid("a_C", ec=ec, reduce={"theta": "max"}, AB=0.1, **inputs)
+        dx.grid("a_C", ec=ec, AB=AB, reduce={"theta": "max"}, **inputs)
+    with pytest.raises(ValueError, match="design"):
+        dx.grid("a_C", ec=ec[:1], AB=AB, **inputs)
 
 
 def test_a_series_without_a_name_of_its_index_is_an_axis():

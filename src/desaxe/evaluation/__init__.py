@@ -10,9 +10,9 @@ points         the base class of steps of a plan; a step: values of names by one
 lazy           a plan as Dask arrays
 labels         units and CF attributes
 quality        condition numbers and error bounds, under loads too
-values         values of names from a dict of inputs: the body of `evaluate`
 function       a prepared callable of some inputs
-labelled       `evaluate` of labelled arrays
+values         values of names from a dict of inputs: the body of `evaluate`
+labelled       `evaluate` of labelled arrays, and grids whose inputs vary together
 in_units       labelled results in other units
 reductions     reductions of a grid along some of its axes: the largest, the mean, the values at one place
 under_loads    values under loads that vary with the motion

@@ -1,6 +1,6 @@
 """The arguments of a grid, checked."""
 
-from collections.abc import Container, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -14,41 +14,32 @@ from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LENGTHS, STATUS
 from ..mechanism.own import Register, register, used_by
 from ..mechanism.program import Variant, program_of
-from ..runtime.request import check_common, several, standstill
+from ..runtime.request import check_common, several
 from ..support.forks import IMPORTS
 from .arrays import as_array
 
 Array = NDArray[Any]
 ALWAYS = ("status", "margin")
-ARGUMENTS = (
-    *INPUTS,
-    "branch",
-    "accuracy",
-    "threads",
-    "out",
-    "reduce",
-    "chunks",
-    "sliders",
-)  # of a grid, by name
+OPTIONS = ("branch", "accuracy", "threads", "out", "reduce", "chunks", "sliders")
+ARGUMENTS = (*INPUTS, *OPTIONS)  # of a grid, by name
 
 
 class Outer(NamedTuple):
     """The arguments of a grid, checked.
 
-    `given` are the inputs as they came, with defaults; `axes` their arrays; `coordinates` those of them
-    that were not a default; `loads` those that vary with the motion, which are no axes.
+    `given` are the inputs as they came; `axes` their arrays; `loads` those that vary with the motion, which
+    are no axes.
     """
 
     names: tuple[str, ...]
     given: dict[str, Any]
     axes: dict[str, Array]
-    coordinates: dict[str, Array]
     loads: Mapping[str, Load] = MappingProxyType({})
 
     @property
     def dimensions(self) -> list[str]:
         """The inputs with one axis, in their order."""
-        return [name for name, array in self.coordinates.items() if array.ndim]
+        return [name for name, array in self.axes.items() if array.ndim]
 
     @property
     def shown(self) -> tuple[str, ...]:
@@ -66,8 +57,8 @@ class Outer(NamedTuple):
         others = [name for name in self.shown if name not in whole]
         if others == [STATUS] and "theta" not in self.axes:  # that of the design
             others, rest = [], [STATUS, *rest]
-        found = [(others, self.dimensions), (rest, self.lengths), (both, [*self.lengths, *self._reverses])]
-        return [(names, along) for names, along in found if names]
+        groups = [(others, self.dimensions), (rest, self.lengths), (both, [*self.lengths, *self._reverses])]
+        return [(names, along) for names, along in groups if names]
 
     @property
     def _reverses(self) -> list[str]:
@@ -97,7 +88,7 @@ def outer_of(
     names: str | Sequence[str], inputs: Mapping[str, Any], branch: int, threads: int | None, always: bool
 ) -> Outer:
     """Check the arguments of a grid; `always`: it has `status` and `margin` too."""
-    wanted = (names,) if isinstance(names, str) else several(names)
+    requested = (names,) if isinstance(names, str) else several(names)
     check_inputs("grid", inputs, ARGUMENTS)
     loads: Mapping[str, Load] = {}
     if any(callable(value) or hasattr(value, "dims") for value in inputs.values()):
@@ -105,31 +96,15 @@ def outer_of(
             from .under_loads.loaded import split_axes
 
         inputs, loads = split_axes(inputs)
-    given = _given(wanted, inputs, loads)
-    check_common(given, branch, threads)
-    shown = tuple(dict.fromkeys((*wanted, *ALWAYS))) if always else wanted
-    axes = {name: _axis(name, value, shown) for name, value in given.items() if value is not None}
-    coordinates = {name: axes[name] for name in inputs if name in axes}
-    return Outer(wanted, given, axes, coordinates, loads)
+    check_common(inputs, branch, threads)
+    shown = tuple(dict.fromkeys((*requested, *ALWAYS))) if always else requested
+    axes = {n: axis_of(n, value, (), shown) for n, value in inputs.items() if value is not None}
+    return Outer(requested, dict(inputs), axes, loads)
 
 
-def _given(names: Sequence[str], inputs: Mapping[str, Any], loads: Iterable[str]) -> dict[str, Any]:
-    """The inputs with their defaults."""
-    given = dict(inputs)
-    if given.get("omega0") is None and given.get("omega") is None:
-        given["omega0"] = standstill(names, {**given, **dict.fromkeys(loads, 0.0)})
-    return given
-
-
-def _axis(name: str, value: Any, names: Sequence[str]) -> Array:
-    array = as_array(name, value, (), names)
+def axis_of(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> Array:
+    """An input of a grid as an array; ValueError for one of several dimensions."""
+    array = as_array(name, value, inputs, names)
     if array.ndim > 1:
         raise ValueError(f"{name}: a grid takes numbers and 1-d arrays, got the shape {array.shape}")
     return array
-
-
-def require_inputs(names: Sequence[str], inputs: Sequence[str], axes: Container[str]) -> None:
-    """Raise TypeError for an input that is needed and not given."""
-    missing = [name for name in inputs if name not in axes]
-    if missing:
-        raise TypeError(f"{', '.join(names)}: {missing[0]} is missing (needed: {', '.join(inputs)})")

@@ -1,12 +1,12 @@
 """`evaluate`: numbers in, a float out; arrays in, arrays out."""
 
-from collections.abc import Callable, Sequence
-from functools import cache
+from collections.abc import Sequence
 from typing import Any
 
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LOADS
+from ..runtime.request import check_sliders
 from ..support.answer import Answer
 from ..support.forks import IMPORTS
 from .values import values
@@ -88,21 +88,14 @@ def evaluate(
     See docs/choose.md: which call for which question.
     """
     if unknown and sliders is None:
-        check_inputs(
-            "evaluate", unknown, (*INPUTS, "branch", "accuracy", "threads", "out", "quality", "sliders")
-        )
+        options = "branch", "accuracy", "threads", "out", "quality", "sliders"
+        check_inputs("evaluate", unknown, (*INPUTS, *options))
     given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
-    values_of: Callable[..., Any] = values
     absent = m_crank is m_rod is m_slider is I_crank is I_rod is r_crank is r_rod is None
     if not (absent and F_X is F_Y is g_X is g_Y is mu is None):
         loads = (m_crank, m_rod, m_slider, I_crank, I_rod, r_crank, r_rod, F_X, F_Y, g_X, g_Y, mu)
         given.update((name, load) for name, load in zip(LOADS, loads, strict=True) if load is not None)
-        if sliders is None and any(map(callable, loads)):
-            values_of = _values_under_loads()
     if sliders is not None:
-        with IMPORTS:
-            from ..runtime.request import check_sliders
-
         check_sliders(sliders)
         if quality:
             raise TypeError("quality=True is of a single slider: crankshaft.members[0].evaluate(...)")
@@ -112,28 +105,19 @@ def evaluate(
             from .quality import evaluate_quality
 
         return evaluate_quality(names, given, branch, accuracy, threads, out)
-    found = values_of(names, given, branch, accuracy, threads, out)
-    if type(found) is dict:
-        found = Values(found)
-        found.inputs = {n: value for n, value in given.items() if value is not None and value is not STEADY}
-    return found
+    result = values(names, given, branch, accuracy, threads, out)
+    if type(result) is dict:
+        result = Values(result)
+        result.inputs = {n: value for n, value in given.items() if value is not None and value is not STEADY}
+    return result
 
 
-@cache
-def _values_under_loads() -> Callable[..., Any]:
-    """`evaluate_loaded`, imported when the first load comes."""
-    with IMPORTS:
-        from .under_loads.loaded import evaluate_loaded
-
-    return evaluate_loaded
-
-
-def _units(found: Any) -> Any:
+def _units(values: Any) -> Any:
     """The units of an answer, when they are first asked for."""
     with IMPORTS:
         from ..mechanism.quantity_units import units_by_name
 
-    return units_by_name(found)
+    return units_by_name(values)
 
 
 def _code(code: int) -> Any:

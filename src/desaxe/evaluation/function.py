@@ -15,11 +15,11 @@ from ..mechanism.catalogue import has, inputs_of, law_name, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs
 from ..mechanism.names import sensitivity
-from ..mechanism.own import Definition, Register, register, register_with, used_by
+from ..mechanism.own import Register, register, register_with, used_by
 from ..mechanism.read import in_si
 from ..runtime.kernels import key_of
 from ..runtime.native_calls import Bound, bind, point_caller, repair_for, scalar_of, ufunc_of
-from ..runtime.request import Request, as_number, check_common, request, several, standstill
+from ..runtime.request import as_number, request, several
 from ..support.computed import computed_once
 from ..support.forks import IMPORTS, imported
 from ..support.shown import shown as as_shown
@@ -85,18 +85,34 @@ class Function:
         fixed: Mapping[str, Any],
         known: Register | None = None,
     ) -> None:
-        self.names, self.inputs, self.fixed = names, inputs, dict(fixed)
-        self._one = one
+        self.names, self.inputs, self.fixed, self._one = names, inputs, dict(fixed), one
         self._known = known or register()  # as it was made: later definitions change nothing
-        self._bound, self._kinds = _compiled(names, inputs, self.fixed, self._known, self._failures)
-        state = "omega" in inputs or fixed.get("omega") is not None
-        self.units = {name: quantity(name, state, self._known).unit for name in names}
+        self._failures: list[BaseException] = []
+        self._is_status = tuple(name == "status" for name in names)
+        self._bound = self._compiled()
+        self._state = "omega" in inputs or fixed.get("omega") is not None
+        self.units = {name: quantity(name, self._state, self._known).unit for name in names}
         self.units |= {name: INPUTS[name].unit for name in inputs}
-        self._ufunc, self._kept = ufunc_of(self._bound, len(inputs), self._kinds, ", ".join(names))
+        self._ufunc, self._kept = ufunc_of(self._bound, len(inputs), self._is_status, ", ".join(names))
 
-    @computed_once
-    def _failures(self) -> list[BaseException]:
-        return []
+    def _compiled(self) -> Bound:
+        """The kernel as a ufunc's inner loop."""
+        branch, accuracy = self.fixed.get("branch", 1), self.fixed.get("accuracy", "standard")
+        given: dict[str, Any] = {n: v for n, v in self.fixed.items() if n in INPUTS and v is not None}
+        given.setdefault("alpha", None if "alpha" in self.inputs else 0.0)
+        given |= dict.fromkeys(self.inputs, np.empty(1))
+        wanted = request(self.names, given, branch, accuracy, self._known)
+        numbers = {}
+        for name in wanted.inputs:
+            if name not in self.inputs:
+                number = as_number(name, given.get(name), wanted.inputs, self.names)
+                if number is None:
+                    message = "is fixed, so it is a number; an array belongs to inputs="
+                    raise TypeError(f"function: {name} {message}")
+                numbers[name] = number
+        axis_of = {name: 0 for name in self.inputs if name in wanted.inputs}
+        key = key_of(wanted, numbers, {}, axis_of, 1)
+        return bind(key, numbers, self.inputs, repair_for(key, numbers, self.inputs, self._failures))
 
     def __call__(self, *args: Any, out: Any = None, **named: Any) -> Any:
         """The values: an array for a name, a tuple for a list of names."""
@@ -108,10 +124,8 @@ class Function:
         if labelled:
             args = tuple(map(_argument, self.inputs, args))
         if out is not None:
-            if type(out) is not tuple or len(out) != len(self.names) or not _all_apart((*args, *out)):
-                out = self._outputs(out)
-                args = tuple([_apart(argument, out) for argument in args])
-            named["out"] = out
+            named["out"] = outs = self._outputs(out)
+            args = tuple([_apart(argument, outs) for argument in args])
         try:
             found = self._ufunc(*args, **named)
         except (TypeError, ValueError):
@@ -177,7 +191,7 @@ class Function:
     @computed_once
     def _slopes(self) -> "Function":
         """The function of the values and of their derivatives, those that are not 0 everywhere."""
-        state = "omega" in self.inputs or self.fixed.get("omega") is not None
+        state = self._state
         wanted = dict.fromkeys(self.names)
         for name in self.names:
             needed = inputs_of(name, state, self._known)
@@ -191,7 +205,7 @@ class Function:
 
     @computed_once
     def _point(self) -> Any:
-        return point_caller(self._bound, len(self.inputs), self._kinds)
+        return point_caller(self._bound, len(self.inputs), self._is_status)
 
     @property
     def address(self) -> int:
@@ -212,9 +226,8 @@ class Function:
         return scalar_of(self._point.address, self.inputs, len(self.names), self._one, self)
 
     def __reduce__(self) -> Any:
-        names = self.names[0] if self._one else list(self.names)
         own = used_by((law_name(name) for name in self.names), self._known)
-        return _again, (names, self.inputs, self.fixed, own)
+        return _again, (self.names, self._one, self.inputs, self.fixed, own)
 
     def __repr__(self) -> str:
         fixed = "".join(f", {name}={value!r}" for name, value in self.fixed.items())
@@ -223,30 +236,14 @@ class Function:
 
 
 def _again(
-    names: str | list[str], inputs: tuple[str, ...], fixed: dict[str, Any], own: tuple[Definition, ...] = ()
+    names: tuple[str, ...], one: bool, inputs: tuple[str, ...], fixed: dict[str, Any], own: Any
 ) -> Function:
-    one = isinstance(names, str)
-    return Function(
-        (names,) if isinstance(names, str) else tuple(names), one, inputs, fixed, register_with(own)
-    )
+    return Function(names, one, inputs, fixed, register_with(own))
 
 
 def _constant_like(values: Any, constant: Any) -> Any:
     """The constant where there is a value, else NaN."""
     return np.where(np.isnan(values), np.nan, constant)[()]
-
-
-def _all_apart(arrays: tuple[Any, ...]) -> bool:
-    """True if it is seen at once that none shares memory with another: each is of an owner of its own."""
-    owners = set()
-    for array in arrays:
-        owner = getattr(array, "base", None)
-        if owner is None:  # else the array is a view, such as those that linspace returns
-            owner = array
-        if type(owner) is not np.ndarray or not owner.flags.owndata:
-            return False
-        owners.add(id(owner))
-    return len(owners) == len(arrays)
 
 
 def _may_share(array: NDArray[Any], out: Any) -> bool:
@@ -276,36 +273,3 @@ def _array(name: str, value: Any) -> Any:
         from .arrays import as_array
 
     return value if hasattr(value, "dims") else as_array(name, value, (), (name,))
-
-
-# ---- compiling ------------------------------------------------------------------------------------
-
-
-def _compiled(
-    names: tuple[str, ...],
-    inputs: tuple[str, ...],
-    fixed: Mapping[str, Any],
-    known: Register,
-    failures: list[BaseException],
-) -> tuple[Bound, tuple[bool, ...]]:
-    """The kernel as a ufunc's inner loop; for each output a flag: it is a status."""
-    branch, accuracy = fixed.get("branch", 1), fixed.get("accuracy", "standard")
-    given: dict[str, Any] = {n: v for n, v in fixed.items() if n in INPUTS and v is not None}
-    given.setdefault("alpha", None if "alpha" in inputs else 0.0)
-    given |= dict.fromkeys(inputs, np.empty(1))
-    if given.get("omega0") is None and given.get("omega") is None:
-        given["omega0"] = standstill(names, given, known)
-    check_common(given, branch)
-    wanted = request(names, given, branch, accuracy, known)
-    numbers = {n: _fixed_number(n, given, wanted) for n in wanted.inputs if n not in inputs}
-    key = key_of(wanted, numbers, {}, {name: 0 for name in inputs if name in wanted.inputs}, 1)
-    repair = repair_for(key, numbers, inputs, failures)
-    kinds = tuple(name == "status" for name in names)
-    return bind(key, numbers, inputs, repair), kinds
-
-
-def _fixed_number(name: str, given: Mapping[str, Any], wanted: Request) -> float:
-    number = as_number(name, given.get(name), wanted.inputs, wanted.shown)
-    if number is None:
-        raise TypeError(f"function: {name} is fixed, so it is a number; an array belongs to inputs=")
-    return number

@@ -7,15 +7,18 @@ from numpy.typing import NDArray
 
 from ..mechanism.inputs import Inputs
 from ..mechanism.keywords import check_inputs
+from ..mechanism.names import LENGTHS
 from ..runtime.request import check_sliders, several, with_named_inputs
 from ..support.forks import IMPORTS
 from .arrays import outputs_for
 from .axes import ARGUMENTS, outer_of
-from .labelled import grid_by_index, has_named_index
+from .labelled import labelled_axis, vary_together
+from .labels import import_xarray, input_attributes, provenance, with_loads
 from .plan import plan_of
 from .points import points_of
 from .reductions.argument import names_reduced, reductions_of
-from .under_loads.loaded import evaluate_loaded
+from .under_loads.loaded import split_axes
+from .values import values
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -87,7 +90,8 @@ def grid(
     gives lazy Dask arrays, each chunk computed by compiled kernels when it is needed, with the same
     digits whatever the chunks. Needs the extra `scale`.
 
-    A pandas Series whose index has a name varies along that index: Series of one index belong together.
+    Labelled arrays that share a dimension vary together along it: it is one axis, and they are coordinates.
+    So do pandas Series whose index has a name, along that.
 
     `sliders` are filled in by a `Crankshaft`: without `reduce`, `chunks` and `out`.
 
@@ -99,18 +103,14 @@ def grid(
         check_sliders(sliders)
         found: xr.Dataset = sliders.grid(names, inputs, accuracy, out=out, reduce=reduce, chunks=chunks)
         return found
-    if any(hasattr(value, "iloc") and has_named_index(value) for value in inputs.values()):
-        _refuse_with_series(reduce=reduce, chunks=chunks, out=out)
-        wanted = (names,) if isinstance(names, str) else several(names)
+    if vary_together(inputs):
+        plain = "is for plain arrays, not for inputs that vary together along a dimension: pass their values"
+        _refuse(plain, reduce=reduce, chunks=chunks, out=out)
         check_inputs("grid", inputs, ARGUMENTS)
-
-        def each(own: list[str], given: dict[str, Any]) -> dict[str, Any]:
-            found: dict[str, Any] = evaluate_loaded(own, given, branch, accuracy, threads)
-            return found
-
-        return grid_by_index(each, wanted, inputs, branch, accuracy)
+        requested = (names,) if isinstance(names, str) else several(names)
+        return _grid_by_labels(requested, inputs, branch, accuracy, threads)
     if out is not None:
-        _refuse_with_out(reduce=reduce, chunks=chunks)
+        _refuse("and out=: give one of them", reduce=reduce, chunks=chunks)
     if reduce is not None:
         names = ((names,) if isinstance(names, str) else several(names)) + names_reduced(reduce)
     outer = outer_of(names, inputs, branch, threads, always=out is None)
@@ -129,17 +129,30 @@ def grid(
     return plan.dataset(lazy_values(plan, chunks, threads))
 
 
-def _refuse_with_series(**options: Any) -> None:
-    """TypeError for an option that goes along the dimensions of inputs, beside Series along an index."""
-    for name, value in options.items():
-        if value is not None:
-            raise TypeError(
-                f"{name}= is for plain arrays, not for Series with a named index: pass .to_numpy()"
-            )
+def _grid_by_labels(
+    names: Sequence[str], inputs: Mapping[str, Any], branch: int, accuracy: str | float, threads: int | None
+) -> "xr.Dataset":
+    """A grid whose inputs of one dimension vary together along it; Series do along the name of their index.
+
+    Each such dimension has its labels, and the inputs along it are coordinates; other arrays are dimensions
+    of their own.
+    """
+    numbers, loads = split_axes({name: value for name, value in inputs.items() if value is not None})
+    arrays = {name: labelled_axis(name, value, names) for name, value in numbers.items()}
+    given = {**numbers, **{name: array for name, array in arrays.items() if array.ndim}, **loads}
+    lengths = {name: given.get(name) for name in (*LENGTHS, "omega0", "omega")}
+    given = {**dict.fromkeys(("theta", *lengths)), "alpha": 0.0, **given}
+    result = values(list(names), given, branch, accuracy, threads)
+    result |= values(["status"], given, branch, accuracy, threads)
+    result |= values(["margin"], lengths, branch, accuracy, threads)
+    about = provenance(names, {name: array.values for name, array in arrays.items()}, branch, accuracy)
+    told = {name: array.assign_attrs(input_attributes(name)) for name, array in arrays.items()}
+    dataset = import_xarray().Dataset(result, attrs=about).assign_coords(told)
+    return with_loads(dataset, loads)
 
 
-def _refuse_with_out(**options: Any) -> None:
-    """TypeError for an option that makes arrays of its own, beside those of out=."""
+def _refuse(why: str, **options: Any) -> None:
+    """TypeError for an option that is given, beside what it does not go with."""
     for name, value in options.items():
         if value is not None:
-            raise TypeError(f"{name}= and out=: give one of them")
+            raise TypeError(f"{name}= {why}")

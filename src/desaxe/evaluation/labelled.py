@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..mechanism.inputs import INPUTS
-from ..mechanism.names import LENGTHS
-from ..support.extras import needed
 from .arrays import as_array
-from .labels import attributes, input_attributes, provenance
+from .axes import axis_of
+from .labels import attributes, import_xarray
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,8 +27,7 @@ def evaluate_labelled(
     `run` evaluates plain arrays, which broadcast by position. ValueError for labels that differ along a
     dimension, and for an array without labels beside others of several dimensions.
     """
-    with needed("labelled arrays"):
-        import xarray
+    xarray = import_xarray("labelled arrays")
     labelled = {name: value for name, value in given.items() if is_labelled(value)}
     _refuse_unlabelled(given, labelled)
     arrays = [value.copy(data=as_array(name, value, (), names)) for name, value in labelled.items()]
@@ -57,45 +55,27 @@ def _refuse_unlabelled(given: Mapping[str, Any], labelled: Mapping[str, Any]) ->
             )
 
 
-def has_named_index(value: Any) -> bool:
-    """True for a pandas Series whose index has a name."""
+def vary_together(inputs: Mapping[str, Any]) -> bool:
+    """True if inputs of a grid share a dimension, or a pandas Series has an index with a name."""
+    labelled = (value for value in inputs.values() if is_labelled(value))
+    dims = [dim for value in labelled for dim in value.dims if dim not in inputs]
+    return len(set(dims)) < len(dims) or any(map(_has_named_index, inputs.values()))
+
+
+def _has_named_index(value: Any) -> bool:
     return hasattr(value, "iloc") and isinstance(getattr(value.index, "name", None), str)
 
 
-def grid_by_index(
-    evaluate: Callable[..., dict[str, Any]],
-    names: Sequence[str],
-    inputs: Mapping[str, Any],
-    branch: int,
-    accuracy: str | float,
-) -> "xr.Dataset":
-    """A grid of which Series are inputs: those that share the name of an index vary together along it.
-
-    Each index is a dimension with its labels, and the inputs along it are coordinates; other arrays are
-    dimensions of their own. `evaluate` takes names and inputs.
-    """
-    with needed("labelled arrays"):
-        import xarray
-    present = {name: value for name, value in inputs.items() if value is not None}
-    arrays = {name: _array(name, value, names) for name, value in present.items() if not callable(value)}
-    given = {**present, **{name: array for name, array in arrays.items() if array.ndim}}
-    lengths = {name: given.get(name) for name in (*LENGTHS, "omega0", "omega")}
-    given = {**dict.fromkeys(("theta", *lengths)), "alpha": 0.0, **given}
-    found = evaluate(list(names), given) | evaluate(["status"], given) | evaluate(["margin"], lengths)
-    told = {name: array.assign_attrs(input_attributes(name)) for name, array in arrays.items()}
-    about = provenance(names, {name: array.values for name, array in arrays.items()}, branch, accuracy)
-    return xarray.Dataset(found, attrs=about).assign_coords(told)
-
-
-def _array(name: str, value: Any, names: Sequence[str]) -> "xr.DataArray":
-    """A number without dimensions, or an array along its own name or that of its index."""
-    with needed("labelled arrays"):
-        import xarray
-    values = as_array(name, value, tuple(INPUTS), names)
-    if values.ndim > 1:
-        raise ValueError(f"{name}: a grid takes numbers and 1-d arrays, got the shape {values.shape}")
-    if not values.ndim:
-        return xarray.DataArray(values)
-    index = value.index if has_named_index(value) else None
-    along = name if index is None else index.name
-    return xarray.DataArray(values, dims=along, coords={along: values if index is None else index})
+def labelled_axis(name: str, value: Any, names: Sequence[str]) -> "xr.DataArray":
+    """A number without dimensions, or an array along its dimension, its own name or that of its index."""
+    xarray = import_xarray("labelled arrays")
+    plain = axis_of(name, value, tuple(INPUTS), names)
+    if is_labelled(value):
+        result: xr.DataArray = value.copy(data=plain)
+    elif _has_named_index(value):
+        result = xarray.DataArray(plain, dims=value.index.name, coords={value.index.name: value.index})
+    else:
+        result = xarray.DataArray(
+            plain, dims=(name,) * plain.ndim, coords={name: plain} if plain.ndim else None
+        )
+    return result

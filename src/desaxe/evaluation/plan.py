@@ -156,7 +156,7 @@ class Plan(NamedTuple):
     def dataset(self, arrays: Mapping[str, Array]) -> "xr.Dataset":
         """The variables as a labelled Dataset."""
         outer, branch = self.outer, self.branch
-        kept = {n: array for n, array in outer.coordinates.items() if not array.ndim or n in self.dims}
+        kept = {n: array for n, array in outer.axes.items() if not array.ndim or n in self.dims}
         own, beside = (
             {n: (s.dims, arrays[n], told.attributes) for s in some for n, told in s.outputs.items()}
             for some in (self.steps, self.beside)

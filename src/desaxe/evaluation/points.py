@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from ..mechanism.own import Definition, using
 from ..runtime.kernels import KernelKey, key_of
-from ..runtime.request import Request
+from ..runtime.request import Request, as_number
 from .arrays import Loops, copied_back, dtype_of, evaluate_arrays, fill, outputs_for, scratch_for
-from .axes import Outer, require_inputs
+from .axes import Outer
 from .labels import Output, attributes
-from .under_loads.loaded import evaluate_loaded
-from .under_loads.request import LoadInputs, request_of
+from .under_loads.request import LoadInputs
+from .values import checked_request, values
 
 Array = NDArray[Any]
 
@@ -116,8 +116,8 @@ class Points(Step):
         assert self.loads is not None
         given = {**dict(self.numbers), **points, **self.loads.loads}
         with using(self.own):
-            found: dict[str, Array] = evaluate_loaded(self.names, given, self.branch, self.wanted.accuracy, 1)
-        return found
+            result: dict[str, Array] = values(self.names, given, self.branch, self.wanted.accuracy, 1)
+        return result
 
     def _fill(self, values: Mapping[str, Array], outs: Sequence[Array], threads: int | None) -> None:
         """Fill outputs of a block."""
@@ -145,35 +145,24 @@ class Points(Step):
         if not count:
             given["theta"] = np.array(given["theta"])
         result = evaluate_arrays(self.wanted, self.inputs, given, threads, None, self.loads)
-        for out, values in zip(outs, result.values(), strict=True):
-            out[...] = values
+        for out, array in zip(outs, result.values(), strict=True):
+            out[...] = array
 
 
-def points_of(
-    names: Sequence[str],
-    outer: Outer,
-    along: Sequence[str],
-    branch: int,
-    accuracy: Any,
-) -> Points:
+def points_of(names: Sequence[str], outer: Outer, along: Sequence[str], branch: int, accuracy: Any) -> Points:
     """The step of names over dimensions of a grid, checked; TypeError for what is missing."""
-    axes = outer.axes
-    wanted, inputs, loads = request_of(names, outer.given, outer.loads, branch, accuracy)
-    require_inputs(names, inputs, axes)
-    scalars, loops = _arguments(inputs, outer, along)
-    columns, axis_of = loops.columns, loops.axis_of
-    if loads is not None and "theta" in columns:  # the values of functions are along it
-        columns = columns | dict.fromkeys(loads.functions, columns["theta"])
-        axis_of = axis_of | dict.fromkeys(loads.functions, axis_of["theta"])
-    taken = loops._replace(columns=columns, axis_of=axis_of).taken_by(wanted)
-    key = key_of(wanted, scalars, taken.columns, taken.axis_of, len(taken.sizes))
-    return Points(tuple(along), wanted, tuple(inputs), tuple(scalars.items()), key, int(branch), loads)
-
-
-def _arguments(names: Sequence[str], outer: Outer, along: Sequence[str]) -> tuple[dict[str, float], Loops]:
-    """The inputs of these names: numbers, and columns along dimensions."""
-    own = {name: outer.axes[name] for name in dict.fromkeys(names) if name in outer.axes}
+    call = checked_request(tuple(names), outer.given, branch, accuracy, outer.loads)
+    wanted, inputs, loads = call.asked, call.inputs, call.of_loads(outer.loads)
+    for name in inputs:
+        if name not in outer.axes:
+            as_number(name, None, inputs, wanted.shown)
+    own = {name: outer.axes[name] for name in inputs}
     scalars = {n: float(axis.reshape(-1)[0]) for n, axis in own.items() if n not in along and axis.size}
     columns = {n: np.ascontiguousarray(axis) for n, axis in own.items() if n in along}
-    sizes = tuple(outer.axes[name].size for name in along) or (1,)
-    return scalars, Loops(sizes, columns, {name: along.index(name) for name in columns})
+    axis_of = {name: along.index(name) for name in columns}
+    if loads is not None and "theta" in columns:  # the values of functions are along it
+        columns |= dict.fromkeys(loads.functions, columns["theta"])
+        axis_of |= dict.fromkeys(loads.functions, axis_of["theta"])
+    loops = Loops(tuple(outer.axes[name].size for name in along) or (1,), columns, axis_of).taken_by(wanted)
+    key = key_of(wanted, scalars, loops.columns, loops.axis_of, len(loops.sizes), call.keys)
+    return Points(tuple(along), wanted, tuple(inputs), tuple(scalars.items()), key, int(branch), loads)

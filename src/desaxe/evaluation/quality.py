@@ -22,7 +22,6 @@ from ..mechanism.messages import message_of
 from ..mechanism.names import LENGTHS, parts, sensitivity
 from ..runtime.request import BOUNDS, accuracy_of, check_common, request, several
 from .arrays import as_array, broadcast_shape, numeric, refuse_other_labels
-from .under_loads.loaded import evaluate_loaded
 from .under_loads.request import MOTION, plan_for
 from .values import values
 
@@ -187,7 +186,7 @@ def _under_loads(name: str, given: Mapping[str, Any], branch: int, threads: int 
     moving = {p for load in plan.loads.values() for p in load.parameters} & found.conditions.keys()
     totals = {p: sensitivity(name, p) for p in moving}
     try:
-        slopes = evaluate_loaded([*totals.values()], given, branch, threads=threads)
+        slopes = values([*totals.values()], given, branch, threads=threads)
     except ValueError as error:
         raise ValueError(f"quality of {name}: not available under a load; " + message_of(error)) from None
     partial = values([*by_force.values()], held, branch, threads=threads)
@@ -195,7 +194,7 @@ def _under_loads(name: str, given: Mapping[str, Any], branch: int, threads: int 
     for force, slope in by_force.items():
         bound = bound + np.abs(partial[slope]) * forces[force][1]
     bound = bound.reshape(np.shape(found.value))
-    value = evaluate_loaded(name, given, branch, threads=threads)
+    value = values(name, given, branch, threads=threads)
     moved = {p: _condition(value, numbers[p], slopes[slope]) for p, slope in totals.items()}
     plain = float(bound) if np.ndim(value) == 0 else np.array(bound)
     return Quality(value, {**found.conditions, **moved}, plain, _digits(value, bound, np.shape(value)))

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.under_loads.loaded import evaluate_loaded
+from ..evaluation.values import values
 from ..loads.load import Load
 from ..mechanism.closed import TURN
 from ..mechanism.closed.angles import dead_centres, limit_angles, repeated
@@ -67,7 +67,7 @@ class SearchedDesigns(NamedTuple):
         """Values of names by their name, for the designs `rows` at one angle each."""
         inputs: dict[str, Any] = {name: column[rows] for name, column in self.columns.items()}
         given = {"alpha": 0.0, **inputs, **self.loads, "theta": theta}
-        found: dict[str, Any] = evaluate_loaded(list(names), given, self.branch)
+        found: dict[str, Any] = values(list(names), given, self.branch)
         return found
 
 

@@ -5,6 +5,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -84,31 +85,27 @@ def ufunc_of(bound: Bound, inputs: int, whole: Sequence[bool], name: str) -> tup
     types = bytes([DOUBLE] * inputs + [BYTE if kind else DOUBLE for kind in whole])
     loops, data = (ctypes.c_void_p * 1)(bound.loop), (ctypes.c_void_p * 1)(bound.data)
     texts = [ctypes.create_string_buffer(text) for text in (types, name.encode(), b"")]
-    places: tuple[Any, ...] = (loops, data, *texts)
-    starts = [ctypes.addressof(place) for place in places]
+    parts: tuple[Any, ...] = (loops, data, *texts)
+    starts = [ctypes.addressof(part) for part in parts]
     ufunc = _new_ufunc()(*starts[:3], 1, inputs, len(whole), NO_IDENTITY, *starts[3:], 0)
-    return ufunc, (bound, loops, data, texts)
+    return ufunc, (bound, parts)
 
 
 def _wide(bound: Bound, whole: Sequence[bool]) -> Callable[..., Any]:
     """A Python function with the ufunc's behaviour, for more arguments than a ufunc can have."""
     loop = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 4)(bound.loop)
-    kinds = [np.int8 if kind else np.float64 for kind in whole]
 
     def call(*args: Any, out: Sequence[Any] | None = None) -> tuple[Any, ...]:
-        given = np.broadcast_arrays(*(np.asarray(a, dtype=np.float64) for a in args))
-        shape = given[0].shape
-        flat = [np.ascontiguousarray(a).reshape(-1) for a in given]
-        found = [np.empty(shape, kind) for kind in kinds]
-        every = [*flat, *(place.reshape(-1) for place in found)]
-        addresses = (ctypes.c_int64 * len(every))(*(a.__array_interface__["data"][0] for a in every))
-        steps = (ctypes.c_int64 * len(every))(*(a.itemsize for a in every))
-        loop(addresses, (ctypes.c_int64 * 1)(flat[0].size), steps, bound.data)
-        if out is not None:
-            for place, values in zip(out, found, strict=True):
-                np.copyto(place, values, casting="same_kind")
-            return tuple(out)
-        return tuple(place[()] for place in found)
+        columns = np.broadcast_arrays(*(np.asarray(a, dtype=np.float64) for a in args))
+        results = [np.empty(columns[0].shape, np.int8 if kind else np.float64) for kind in whole]
+        every = [np.ascontiguousarray(a).reshape(-1) for a in (*columns, *results)]
+        numbers = ([a.ctypes.data for a in every], [every[0].size], [a.itemsize for a in every])
+        loop(*((ctypes.c_int64 * len(row))(*row) for row in numbers), bound.data)
+        if out is None:
+            return tuple(values[()] for values in results)
+        for array, values in zip(out, results, strict=True):
+            np.copyto(array, values, casting="same_kind")
+        return tuple(out)
 
     return call
 
@@ -125,42 +122,37 @@ def point_caller(bound: Bound, inputs: int, whole: Sequence[bool]) -> PointCalle
 
     A status is told as a double.
     """
-    count = inputs + len(whole)
+    slots = [("%in", k, 8) for k in range(inputs)]
+    slots += [("%bytes", k, 1) if byte else ("%out", k, 8) for k, byte in enumerate(whole)]
     rows = [
-        f"  %args = alloca [{count} x ptr]",
-        f"  %steps = alloca [{count} x i64]",
-        "  %size = alloca i64",
-        f"  %bytes = alloca [{len(whole)} x i8]",
-        "  store i64 1, ptr %size",
+        f"%args = alloca [{len(slots)} x ptr]",
+        f"%steps = alloca [{len(slots)} x i64]",
+        "%size = alloca i64",
+        f"%bytes = alloca [{len(whole)} x i8]",
+        "store i64 1, ptr %size",
     ]
-    after = []
-    for k in range(count):
-        own = k - inputs
-        byte = own >= 0 and whole[own]
-        source = f"i8, ptr %bytes, i64 {own}" if byte else f"double, ptr %{'in' if own < 0 else 'out'}, i64 "
-        source += "" if byte else str(k if own < 0 else own)
+    for k, (base, index, size) in enumerate(slots):
         rows += [
-            f"  %p{k} = getelementptr {source}",
-            f"  %a{k} = getelementptr ptr, ptr %args, i64 {k}",
-            f"  store ptr %p{k}, ptr %a{k}",
-            f"  %s{k} = getelementptr i64, ptr %steps, i64 {k}",
-            f"  store i64 {1 if byte else 8}, ptr %s{k}",
+            f"%p{k} = getelementptr i8, ptr {base}, i64 {index * size}",
+            f"%a{k} = getelementptr ptr, ptr %args, i64 {k}",
+            f"store ptr %p{k}, ptr %a{k}",
+            f"%s{k} = getelementptr i64, ptr %steps, i64 {k}",
+            f"store i64 {size}, ptr %s{k}",
         ]
-        if byte:
-            after += [
-                f"  %b{k} = load i8, ptr %p{k}",
-                f"  %d{k} = sitofp i8 %b{k} to double",
-                f"  %o{k} = getelementptr double, ptr %out, i64 {own}",
-                f"  store double %d{k}, ptr %o{k}",
-            ]
-    call = [
-        f"  %loop = inttoptr i64 {bound.loop} to ptr",
-        f"  %data = inttoptr i64 {bound.data} to ptr",
-        "  call void %loop(ptr %args, ptr %size, ptr %steps, ptr %data)",
+    rows += [
+        f"%loop = inttoptr i64 {bound.loop} to ptr",
+        f"%data = inttoptr i64 {bound.data} to ptr",
+        "call void %loop(ptr %args, ptr %size, ptr %steps, ptr %data)",
     ]
-    body = "\n".join([*rows, *call, *after, "  ret i64 0"])
-    text = f"define i64 @point(ptr %in, ptr %out) {{\n{body}\n}}"
-    code = finished(lambda: compiled(text, "point"))
+    for k in [k for k, byte in enumerate(whole) if byte]:
+        rows += [
+            f"%b{k} = load i8, ptr %p{inputs + k}",
+            f"%d{k} = sitofp i8 %b{k} to double",
+            f"%o{k} = getelementptr double, ptr %out, i64 {k}",
+            f"store double %d{k}, ptr %o{k}",
+        ]
+    body = "\n".join(f"  {row}" for row in [*rows, "ret i64 0"])
+    code = finished(lambda: compiled(f"define i64 @point(ptr %in, ptr %out) {{\n{body}\n}}", "point"))
     return PointCaller(code.address, (code, bound))
 
 
@@ -223,22 +215,15 @@ def _arrays(
 ) -> tuple[dict[str, Array], list[Array]]:
     """The arguments of the loop as arrays: the inputs of the kernel, and the outputs."""
     count = len(inputs) + len(key.names)
-    addresses, strides = ((ctypes.c_int64 * count).from_address(place) for place in (args, steps))
+    addresses, strides = ((ctypes.c_int64 * count).from_address(start) for start in (args, steps))
     kinds = ["<f8"] * len(inputs) + ["|i1" if name in STATUSES else "<f8" for name in key.names]
-    every = [_View(a, size, s, kind).array() for a, s, kind in zip(addresses, strides, kinds, strict=True)]
+    every = [_array(*row, size) for row in zip(addresses, strides, kinds, strict=True)]
     own = dict(key.axis_of)
     columns = {name: array for name, array in zip(inputs, every, strict=False) if name in own}
     return columns, every[len(inputs) :]
 
 
-class _View:
-    """Memory at an address, with NumPy's array interface."""
-
-    def __init__(self, address: int, size: int, stride: int, kind: str) -> None:
-        self.__array_interface__ = {
-            "version": 3, "data": (address, False), "shape": (size,), "strides": (stride,), "typestr": kind,
-        }  # fmt: skip
-
-    def array(self) -> Array:
-        """The array."""
-        return np.asarray(self)
+def _array(address: int, stride: int, kind: str, size: int) -> Array:
+    """Memory at an address as an array."""
+    layout = {"data": (address, False), "shape": (size,), "strides": (stride,), "typestr": kind, "version": 3}
+    return np.asarray(SimpleNamespace(__array_interface__=layout))

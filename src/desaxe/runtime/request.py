@@ -115,12 +115,14 @@ def _request(
     zeros = [(name, 0.0) for name in absent if name not in CENTRES]
     if "alpha" in inputs and steady:
         zeros.append(("alpha", 0.0))
-    if "omega0" in inputs and not state and "omega0" not in present and needs_no_speed(own, known):
-        zeros.append(("omega0", 0.0))
     default_centres = tuple(name for name in CENTRES if name not in present and _moves(name, own, defined))
     if accuracy == "extended":
         check_extended(defined)
     variant = Variant(state, default_centres, own=defined)
+    if "omega0" in inputs and not state and "omega0" not in present:
+        moving = tuple(name for name in own if name not in STATUSES and not of_design(name, known))
+        if not moving or "omega0" not in specialise(moving, variant, (("branch", branch), *zeros)).inputs:
+            zeros.append(("omega0", 0.0))
     return Request(shown, own, variant, (("branch", branch), *zeros), accuracy)
 
 
@@ -211,13 +213,6 @@ def several(names: Any) -> tuple[str, ...]:
         raise TypeError(
             f"names = {shown(names)}: expected the name of a quantity or a list of names"
         ) from None
-
-
-def standstill(names: Iterable[str], given: Mapping[str, Any], known: Register | None = None) -> float | None:
-    """The default speed: 0 if only `status` would use it, else None."""
-    known = known or register()
-    others = tuple(name for name in names if name != STATUS and not of_design(name, known))
-    return None if others and "omega0" in request(others, given, 1, "standard", known).inputs else 0.0
 
 
 def as_number(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> float | None:

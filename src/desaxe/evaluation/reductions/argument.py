@@ -9,6 +9,7 @@ a list of these alone                           goes along theta
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 from ...mechanism.catalogue import of_design
@@ -22,7 +23,8 @@ from ...units.text import with_unit_of
 from .kinds import ALLOWED, kind_name, kind_of
 from .own_measure import OwnMeasure
 
-Chain = Sequence[tuple[tuple[str, ...], str]]  # axes and what is taken of them, one after the other
+Chain = list[tuple[tuple[str, ...], str]]  # axes and what is taken of them, one after the other
+EVERY = ""  # stands for every name
 NO_STATUS = "a status has no largest or mean: leave it out; each name has a count of skipped points"
 EXAMPLE = '{"theta": "absmax"}'
 
@@ -35,15 +37,14 @@ class Reduction(NamedTuple):
 
 
 class Stage(NamedTuple):
-    """Kinds along some axes at once: of every name, and of single names as (kind, name)."""
+    """Kinds along some axes at once, each of every name or of a single one: (kind, name)."""
 
     axes: tuple[str, ...]
-    kinds: tuple[str, ...]
-    single: tuple[tuple[str, str], ...] = ()
+    taken: tuple[tuple[str, str], ...]
 
-    def kinds_of(self, name: str) -> tuple[str, ...]:
+    def kinds_of(self, name: str) -> list[str]:
         """The kinds that are taken of a name."""
-        return tuple(dict.fromkeys((*self.kinds, *(kind for kind, own in self.single if own == name))))
+        return [*dict.fromkeys(kind for kind, of in self.taken if of in (EVERY, name))]
 
 
 class At(NamedTuple):
@@ -74,38 +75,36 @@ class Reductions(NamedTuple):
     @property
     def kinds(self) -> tuple[str, ...]:
         """All kinds, in their order."""
-        kinds = (k for stage in self.stages for k in (*stage.kinds, *(one for one, _ in stage.single)))
-        return tuple(dict.fromkeys(kinds))
+        return tuple(dict.fromkeys(kind for stage in self.stages for kind, _ in stage.taken))
 
     @property
     def alone(self) -> Reduction | None:
-        """The request as kinds along one axis that a kernel computes; None where it is more than that."""
-        stage = self.stages[0]
-        more = self.at or self.functions or stage.single or len(self.stages) > 1 or len(stage.axes) > 1
-        more = more or not all(kind_of(kind).combines for kind in stage.kinds)
-        return None if more else Reduction(stage.axes[0], stage.kinds)
+        """The request as kinds along one axis that exported modules have; None where it is more than that."""
+        more = self.at or self.functions or len(self.axes) > 1
+        more = more or any(of or not kind_of(kind).combines for kind, of in self.stages[0].taken)
+        return None if more else Reduction(self.axes[0], self.kinds)
 
     def plain(self) -> dict[str, list[Any]]:
         """The request in plain lists, which tell it from another."""
-        found: dict[str, list[Any]] = {
-            ", ".join(s.axes): [*s.kinds, *map(list, s.single)] for s in self.stages
+        result: dict[str, list[Any]] = {
+            ", ".join(stage.axes): [[kind, of] if of else kind for kind, of in stage.taken]
+            for stage in self.stages
         }
         last = ", ".join(self.stages[-1].axes)
-        found[last] += [["at", one.place, one.name] for one in self.at]
-        found[last] += [function.name for function in self.functions]
-        return found
+        result[last] += [["at", one.place, one.name] for one in self.at]
+        result[last] += [function.name for function in self.functions]
+        return result
 
-    def chains(self, name: str) -> list[list[tuple[tuple[str, ...], str]]]:
+    def chains(self, name: str) -> list[Chain]:
         """Lists of (axes, kind) that are taken of a name; equal kinds in a row go along all axes at once."""
-        chains: list[list[tuple[tuple[str, ...], str]]] = [[]]
+        chains: list[Chain] = [[]]
         for stage in self.stages:
-            chains = [_extended(chain, stage.axes, kind) for chain in chains for kind in stage.kinds_of(name)]
+            kinds = stage.kinds_of(name)
+            chains = [_extended(chain, stage.axes, kind) for chain in chains for kind in kinds]
         return chains
 
 
-def _extended(
-    chain: list[tuple[tuple[str, ...], str]], axes: tuple[str, ...], kind: str
-) -> list[tuple[tuple[str, ...], str]]:
+def _extended(chain: Chain, axes: tuple[str, ...], kind: str) -> Chain:
     if chain and chain[-1][1] == kind:
         return [*chain[:-1], ((*chain[-1][0], *axes), kind)]
     return [*chain, (axes, kind)]
@@ -118,10 +117,10 @@ def chain_name(name: str, chain: Chain) -> str:
 
 def extremes_at_end(chain: Chain) -> tuple[str, ...]:
     """The axes along which the result of a chain has a place: those since its last average."""
-    found: tuple[str, ...] = ()
+    result: tuple[str, ...] = ()
     for axes, kind in chain:
-        found = (*found, *axes) if kind_of(kind).score else ()
-    return found
+        result = (*result, *axes) if kind_of(kind).score else ()
+    return result
 
 
 # ---- from what the user says ------------------------------------------------------------------------
@@ -131,34 +130,29 @@ def reductions_of(asked: Any, dimensions: Sequence[str], names: Sequence[str]) -
     """A request, checked; ValueError or TypeError that names what is wrong."""
     if isinstance(asked, Reductions):
         return asked
-    entries = _entries(asked)
-    used: list[str] = []
-    found = []
-    at: list[At] = []
+    entries, stages = _entries(asked), list[Stage]()
+    at: dict[At, None] = {}
     functions: list[OwnMeasure] = []
-    for key, taken in entries.items():
-        axes = _axes(key, dimensions, used)
-        used += axes
-        kinds: dict[str, None] = {}
-        single: dict[tuple[str, str], None] = {}
-        for one in _listed(key, taken):
+    for key, items in entries.items():
+        axes = _axes(key, dimensions, [axis for stage in stages for axis in stage.axes])
+        taken: dict[tuple[str, str], None] = {}
+        for one in _listed(key, items):
             measure = _measure(one)
             if measure is None:
-                kinds[kind_name(one)] = None
+                taken[kind_name(one), EVERY] = None
             elif len(entries) > 1:
-                raise ValueError(
-                    f"reduce: {shown(one)}: a measure of one name goes along one axis, without others"
-                )
+                alone = "a measure of one name goes along one axis, without others"
+                raise ValueError(f"reduce: {shown(one)}: {alone}")
             elif isinstance(measure, OwnMeasure):
                 functions.append(measure)
             elif measure[0] == "at":
-                at.append(_at(axes, *measure[1:]))
+                at[_at(axes, *measure[1:])] = None
             else:
-                single[kind_name(measure[0]), measure[1]] = None
-        if not (kinds or single or at or functions):
+                taken[kind_name(measure[0]), measure[1]] = None
+        if not (taken or at or functions):
             raise ValueError(f"reduce: nothing is taken of {_text(axes)}; allowed: {ALLOWED}")
-        found.append(Stage(axes, tuple(kinds), tuple(single)))
-    result = Reductions(tuple(found), tuple(dict.fromkeys(at)), tuple(functions))
+        stages.append(Stage(axes, tuple(taken)))
+    result = Reductions(tuple(stages), tuple(at), tuple(functions))
     _check_names(result, names)
     return result
 
@@ -174,24 +168,19 @@ def at_with_units(asked: Any, system: UnitSystem, axis: str = "theta") -> Any:
         return asked
     if not (len(asked) == 3 and asked[0] == "at"):
         return type(asked)(at_with_units(one, system, axis) for one in asked)
-    conversion = system.of(axis)
+    conversion, place = system.of(axis), asked[1]
     if conversion.si == 1:
         return asked
-    text = asked[1] if isinstance(asked[1], str) else _digits(asked[1])
-    return type(asked)(("at", with_unit_of(f"1 {conversion.unit}", text), asked[2]))
-
-
-def _digits(number: Any) -> Any:
-    """A number as text; anything else as it is."""
-    plain = isinstance(number, (int, float)) or is_numpy_number(number)
-    return number if isinstance(number, bool) or not plain else repr(float(number)).removesuffix(".0")
+    if not isinstance(place, bool) and (isinstance(place, (int, float)) or is_numpy_number(place)):
+        place = repr(float(place)).removesuffix(".0")
+    return type(asked)(("at", with_unit_of(f"1 {conversion.unit}", place), asked[2]))
 
 
 def names_reduced(asked: Any) -> tuple[str, ...]:
     """The names that measures of a request are of, which need not be asked for beside it."""
     if isinstance(asked, Reductions):
         return ()
-    measures = [_measure(one) for key, taken in _entries(asked).items() for one in _listed(key, taken)]
+    measures = [_measure(one) for key, items in _entries(asked).items() for one in _listed(key, items)]
     return tuple(dict.fromkeys(one[-1] for one in measures if isinstance(one, tuple)))
 
 
@@ -211,25 +200,23 @@ def _axes(key: Any, dimensions: Sequence[str], used: Sequence[str]) -> tuple[str
         raise TypeError(f"reduce: {shown(key)}: expected an axis or a tuple of axes")
     for number, axis in enumerate(axes):
         if axis not in dimensions:
-            there = ", ".join(dimensions) or "none"
             hint = did_you_mean(str(axis)[:40], dimensions)
-            raise ValueError(f"reduce: {shown(axis)} is not an axis of this grid; {hint}axes: {there}")
+            known = ", ".join(dimensions) or "none"
+            raise ValueError(f"reduce: {shown(axis)} is not an axis of this grid; {hint}axes: {known}")
         if axis in used or axis in axes[:number]:
             raise ValueError(f"reduce: {axis!r} is reduced twice")
     return axes
 
 
-def _listed(key: Any, taken: Any) -> list[Any]:
+def _listed(key: Any, items: Any) -> list[Any]:
     """The kinds and measures of an axis as a list."""
-    single = isinstance(taken, str) or callable(taken) or _measure(taken) is not None
-    if single or (isinstance(taken, (tuple, list)) and len(taken) == 2 and taken[0] == "percentile"):
-        return [taken]
-    if isinstance(taken, Mapping) or not isinstance(taken, Iterable):
-        raise TypeError(
-            f"reduce: {_text(key)} = {shown(taken)}: expected the name of a reduction or a list of names, "
-            f"of {ALLOWED}"
-        )
-    return list(taken)
+    pair = isinstance(items, (tuple, list)) and len(items) == 2 and items[0] == "percentile"
+    if pair or isinstance(items, str) or _measure(items) is not None:
+        return [items]
+    if isinstance(items, Mapping) or not isinstance(items, Iterable):
+        expected = f"expected the name of a reduction or a list of names, of {ALLOWED}"
+        raise TypeError(f"reduce: {_text(key)} = {shown(items)}: {expected}")
+    return list(items)
 
 
 def _measure(one: Any) -> OwnMeasure | tuple[Any, ...] | None:
@@ -249,10 +236,9 @@ def _measure(one: Any) -> OwnMeasure | tuple[Any, ...] | None:
 
 
 def _is_kind(text: str) -> bool:
-    try:
+    with suppress(ValueError):
         return bool(kind_name(text))
-    except ValueError:
-        return False
+    return False
 
 
 def _at(axes: tuple[str, ...], place: Any, name: str) -> At:
@@ -264,18 +250,18 @@ def _at(axes: tuple[str, ...], place: Any, name: str) -> At:
     return At(number, name, place if isinstance(place, str) else f"{number:g}")
 
 
-def _check_names(found: Reductions, names: Sequence[str]) -> None:
+def _check_names(result: Reductions, names: Sequence[str]) -> None:
     if "status" in names:
         raise ValueError(f"reduce: {NO_STATUS}")
-    measured = {one.name for one in found.at}
-    still = [name for name in names if of_design(name)]
-    if still and "theta" in found.axes:
-        raise ValueError(f"reduce: {still[0]} is of the whole design: it has no course over theta")
-    idle = [name for name in names if not found.chains(name) and name not in measured]
-    if idle:
-        raise ValueError(f"reduce: nothing is taken of {idle[0]}; allowed: {ALLOWED}")
-    called = [one.variable for one in found.at] + [one.name for one in found.functions]
-    called += [chain_name(name, chain) for name in names for chain in found.chains(name)]
+    measured = {one.name for one in result.at}
+    called = [one.variable for one in result.at] + [one.name for one in result.functions]
+    for name in names:
+        if "theta" in result.axes and of_design(name):
+            raise ValueError(f"reduce: {name} is of the whole design: it has no course over theta")
+        chains = result.chains(name)
+        if not chains and name not in measured:
+            raise ValueError(f"reduce: nothing is taken of {name}; allowed: {ALLOWED}")
+        called += [chain_name(name, chain) for chain in chains]
     twice = [name for name in called if called.count(name) > 1]
     if twice:
         raise ValueError(f"reduce: two results would be called {twice[0]}")

@@ -1,6 +1,6 @@
-"""Values under loads that vary with the motion, and labelled arrays as loads."""
+"""Loads among the inputs of a call: those that vary with the motion, and labelled arrays."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,23 +13,9 @@ from ...loads.tabulated import over_theta
 from ...mechanism.closed import TURN
 from ...mechanism.messages import amount, message_of
 from ..arrays import as_array
-from ..values import values
 
 Array = NDArray[Any]
 GAP = 1.5  # steps: a table that lacks no more of a turn is a whole one
-
-
-def evaluate_loaded(
-    names: str | Sequence[str],
-    given: Mapping[str, Any],
-    branch: int,
-    accuracy: str | float = "standard",
-    threads: int | None = None,
-    out: Any = None,
-) -> Any:
-    """`values` where F_X or F_Y may vary with the motion."""
-    numbers, loads = split({name: value for name, value in given.items() if value is not None})
-    return values(names, numbers, branch, accuracy, threads, out, loads)
 
 
 def loads_of(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Load]]:
@@ -41,9 +27,6 @@ def with_labelled(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """The inputs, with labelled arrays over theta replaced by the loads that they stand for."""
     labelled = [n for n in VARIABLE if getattr(inputs.get(n), "dims", ()) == ("theta",)]
     return {**inputs, **{n: labelled_load(n, inputs[n]) for n in labelled}}
-
-
-# ---- grids ----------------------------------------------------------------------------------------
 
 
 def split_axes(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Load]]:

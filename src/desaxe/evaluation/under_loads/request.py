@@ -15,14 +15,12 @@ from ...loads.load import Load, OverTheta, TableOverTheta, ahead
 from ...loads.resolve import LoadPlan, plan_of, split, way_of
 from ...mechanism.load_lines import LoadLines, TurningSense, Under
 from ...mechanism.names import LENGTHS, STATUS
-from ...mechanism.own import Register, register
+from ...mechanism.own import Register
 from ...runtime.point import point_of
-from ...runtime.request import Request, accuracy_of, is_steady, request
+from ...runtime.request import Request, request
 from ...support.forks import IMPORTS
-from ...support.recent import Recent
 
 MOTION = ("theta", *LENGTHS, "omega0", "alpha", "omega")  # inputs that every request has, if only as None
-MOST_KNOWN = 256  # requests that are remembered
 
 
 class LoadInputs(NamedTuple):
@@ -112,7 +110,7 @@ def request_of(
     if numbers.get("theta") is None:
         varying = " and ".join(plan.loads)
         raise TypeError(f"{', '.join(plan.shown)}: theta, over which {varying} varies, is missing")
-    return under_loads(plan, numbers, branch, accuracy)
+    return under_loads(plan, numbers, branch, accuracy, known)
 
 
 def plan_at(names: Sequence[str], loads: Mapping[str, Load], given: Container[str]) -> LoadPlan:
@@ -128,29 +126,14 @@ def plan_for(names: Sequence[str], given: Mapping[str, Any]) -> tuple[dict[str, 
     return numbers, plan_at(names, loads, numbers)
 
 
-_KNOWN: Recent[Any, tuple[Request, tuple[str, ...], tuple[str, ...], Request | None]] = Recent(MOST_KNOWN)
-
-
-def under_loads(plan: LoadPlan, given: Mapping[str, Any], branch: int, accuracy: Any) -> LoadedRequest:
+def under_loads(
+    plan: LoadPlan, given: Mapping[str, Any], branch: int, accuracy: Any, known: Register | None = None
+) -> LoadedRequest:
     """The request of a plan's totals."""
-    lines = tuple(_lines(name, load) for name, load in plan.loads.items())
-    present = tuple(name for name, value in given.items() if value is not None)
-    sort = tuple(load.variant for load in plan.loads.values())
-    steady, accuracy = is_steady(given.get("alpha")), accuracy_of(accuracy)
-    key = plan.shown, lines, sort, present, steady, branch, accuracy, register()
-    known = _KNOWN.get(key)
-    if known is None:
-        known = _KNOWN[key] = _new_request(plan, lines, given, branch, accuracy)
-    asked, inputs, functions, motion = known
-    return LoadedRequest(asked, inputs, LoadInputs(plan.loads, functions, motion))
-
-
-def _new_request(
-    plan: LoadPlan, lines: tuple[LoadLines, ...], given: Mapping[str, Any], branch: int, accuracy: Any
-) -> tuple[Request, tuple[str, ...], tuple[str, ...], Request | None]:
     every = tuple(dict.fromkeys((*plan.names, *plan.motion)))
-    asked = request(every, {**given, **dict.fromkeys(plan.loads, 1.0)}, branch, accuracy)
+    asked = request(every, {**given, **dict.fromkeys(plan.loads, 1.0)}, branch, accuracy, known)
     names = dict(zip(asked.shown, asked.names, strict=True))
+    lines = tuple(_lines(name, load) for name, load in plan.loads.items())
     under = Under(tuple(names.items()), lines, totals_of(plan), _sense(given))
     own = tuple(names[name] for name in plan.shown)
     asked = Request(plan.shown, own, asked.form._replace(under=under), asked.fixed, asked.accuracy)
@@ -159,15 +142,15 @@ def _new_request(
     motion = None
     if plan.of_motion:
         needed = {n: given.get(n) for n in (*LENGTHS, *SPEEDS) if n in LENGTHS or plan.follows_speed}
-        motion = request(
-            plan.of_motion, {**dict.fromkeys(MOTION), **needed, "theta": 1.0}, branch, "standard"
-        )
+        at = {**dict.fromkeys(MOTION), **needed, "theta": 1.0}
+        motion = request(plan.of_motion, at, branch, "standard", known)
     more = () if motion is None else motion.inputs
     forces = [*plan.loads, *(part for item in plan.loads.items() for part in tables_of(*item))]
     made = by | {f"{load}{end}" for load in forces for end in ("", "_first", "_period")}
     taken = {*asked.inputs, "theta", *more} - made
     inputs = tuple(name for name in dict.fromkeys((*given, *asked.inputs, *more)) if name in taken)
-    return asked, inputs, tuple(name for name in asked.inputs if name in by or name in plan.loads), motion
+    functions = tuple(name for name in asked.inputs if name in by or name in plan.loads)
+    return LoadedRequest(asked, inputs, LoadInputs(plan.loads, functions, motion))
 
 
 def _lines(name: str, load: Load) -> LoadLines:
