@@ -80,16 +80,15 @@ def change(changed: Callable[[Mapping[str, Definition]], Mapping[str, Definition
             _NOW[0] = Register(after)
 
 
-@lru_cache(maxsize=64)
-def _with(known: Register, own: tuple[Definition, ...]) -> Register:
-    return Register({**known.definitions, **{definition.name: definition for definition in own}})
-
-
 def register_with(own: tuple[Definition, ...]) -> Register:
     """The definitions of this call and those that a request brings along, which come first."""
-    now = register()
-    differ = any(now.definitions.get(definition.name) != definition for definition in own)
-    return _with(now, own) if differ else now
+    return _with(register(), own)
+
+
+@lru_cache(maxsize=64)
+def _with(known: Register, own: tuple[Definition, ...]) -> Register:
+    differ = any(known.definitions.get(definition.name) != definition for definition in own)
+    return Register({**known.definitions, **{one.name: one for one in own}}) if differ else known
 
 
 def definitions() -> dict[str, Definition]:
@@ -139,14 +138,16 @@ def rows_of(definition: Definition, known: Mapping[str, Definition]) -> dict[str
     name = definition.name
     made_of = leaves((name,), known)
     parameters = [p for p in (*PARAMETERS, *LOADS) if p in PARAMETERS or any(depends(n, p) for n in made_of)]
-    found = {name: (definition.unit, definition.meaning, definition.expression)}
-    for parameter in parameters:
-        found[joined(name, (parameter,))] = derivative_row(name, definition.unit, (parameter,))
-    for place, first in enumerate(parameters):
-        for second in parameters[place:]:
-            if all(_has_second(leaf, first, second) for leaf in made_of):
-                found[joined(name, (first, second))] = derivative_row(name, definition.unit, (first, second))
-    return found
+    pairs = (
+        (first, second)
+        for index, first in enumerate(parameters)
+        for second in parameters[index:]
+        if all(_has_second(leaf, first, second) for leaf in made_of)
+    )
+    result = {name: (definition.unit, definition.meaning, definition.expression)}
+    for by in (*((p,) for p in parameters), *pairs):
+        result[joined(name, by)] = derivative_row(name, definition.unit, by)
+    return result
 
 
 def derivative_row(name: str, unit: str, parameters: tuple[str, ...]) -> Row:

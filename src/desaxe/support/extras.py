@@ -6,27 +6,22 @@ from contextlib import contextmanager
 from .forks import IMPORTS
 
 EXTRAS = {
-    "sympy": "derive",
-    "xarray": "labelled",
-    "pandas": "labelled",
-    "h5netcdf": "labelled",
-    "h5py": "labelled",
-    "zarr": "zarr",
-    "dask": "scale",
-    "distributed": "scale",
-    "matplotlib": "plot",
-    "pint": "units",
-    "msgspec": "scene",
-    "tqdm": "scene",
-    "plotly": "explore",
-    "xlsxwriter": "excel",
-    "openpyxl": "excel",
-    "fmpy": "fmu",
-    "scipy": "simulate",
-    "flint": "rigorous",
-    "python-flint": "rigorous",
-    "mpmath": "rigorous",
-    "desaxe.derive": "derive",
+    package: extra
+    for extra, packages in {
+        "derive": "sympy desaxe.derive",
+        "labelled": "xarray pandas h5netcdf h5py",
+        "zarr": "zarr",
+        "scale": "dask distributed",
+        "plot": "matplotlib",
+        "units": "pint",
+        "scene": "msgspec tqdm",
+        "explore": "plotly",
+        "excel": "xlsxwriter openpyxl",
+        "fmu": "fmpy",
+        "simulate": "scipy",
+        "rigorous": "flint python-flint mpmath",
+    }.items()
+    for package in packages.split()
 }
 
 

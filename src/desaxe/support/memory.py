@@ -24,16 +24,15 @@ def bytes_of(memory: Any) -> int | None:
     if memory is None:
         return None
     is_number = isinstance(memory, Real) and not isinstance(memory, bool)
-    if isinstance(memory, str):
-        match = _SIZE.fullmatch(memory)
-        if match is None:
-            raise ValueError(f'memory = {shown(memory)}: a number of bytes, or text such as "200 MB"')
+    match = _SIZE.fullmatch(memory) if isinstance(memory, str) else None
+    if match is not None:
         prefix = " kmgt".index((match[2] or " ").lower())
         number = float(match[1]) * (1024.0 if match[3] else 1000.0) ** prefix
-    elif not is_number:
-        raise TypeError(f'memory = {shown(memory)}: a number of bytes, or text such as "200 MB"')
-    else:
+    elif is_number:
         number = float(max(min(memory, 2**63), -1))
+    else:
+        kind = ValueError if isinstance(memory, str) else TypeError
+        raise kind(f'memory = {shown(memory)}: a number of bytes, or text such as "200 MB"')
     if not 1.0 <= number < 2.0**63:
         raise ValueError(f"memory = {shown(memory)}: at least one byte, less than 2^63")
     return int(number)
