@@ -82,21 +82,15 @@ def test_other_names_are_right_in_javascript(name, tmp_path):
 @pytest.mark.parametrize(
     ("to", "name"),
     [
-        ("javascript", "evaluate"),
-        ("javascript", "Infinity"),
-        ("javascript", "default"),
-        ("jax", "asarray"),
-        ("jax", "OUTPUTS"),
-        ("numba", "array"),
-        ("numba", "float64"),
+        ("javascript", "evaluate"), ("javascript", "Infinity"), ("javascript", "default"), ("jax", "asarray"),
+        ("jax", "OUTPUTS"), ("numba", "array"), ("numba", "float64"),
     ],
-)
+)  # fmt: skip
 def test_a_name_that_would_hide_a_part_of_the_module_is_refused(to, name, tmp_path):
-    with (
-        defined(name, "2*V_C"),
-        pytest.raises(ValueError, match=f"outputs: {name!r}: a word of the module's language"),
-    ):
-        dx.compile(scene(name), tmp_path / ("press.js" if to == "javascript" else "press.py"), to=to)
+    file = tmp_path / ("press.js" if to == "javascript" else "press.py")
+    refused = pytest.raises(ValueError, match=f"outputs: {name!r}: a word of the module's language")
+    with defined(name, "2*V_C"), refused:
+        dx.compile(scene(name), file, to=to)
 
 
 @pytest.mark.parametrize("name", ["kernel", "signature", "length", "x"])
@@ -106,8 +100,7 @@ def test_other_names_are_right_in_python(name, tmp_path):
         numba = imported(dx.compile(scene(name), tmp_path / "press_numba.py"))
         jax = imported(dx.compile(scene(name), tmp_path / "press_jax.py", to="jax"))
         wanted = 2.0 * dx.evaluate("V_C", theta=at[0], **POINT)
-    assert numba.point(*at)[0] == pytest.approx(wanted, rel=1e-14)
-    assert getattr(numba, name)(*at) == pytest.approx(wanted, rel=1e-14)
+    assert numba.point(*at)[0] == getattr(numba, name)(*at) == pytest.approx(wanted, rel=1e-14)
     with jax_in_doubles():
         assert float(getattr(jax, name)(*at)) == pytest.approx(wanted, rel=1e-13)
 

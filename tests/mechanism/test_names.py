@@ -10,16 +10,13 @@ from desaxe.mechanism.names import LOADS, ORDER, PARAMETERS, joined, parts, sens
 @pytest.mark.parametrize(
     ("name", "base", "parameters"),
     [
-        ("a_C", "a_C", ()),
-        ("a_C_wrt_ec", "a_C", ("ec",)),
-        ("alpha_BC_wrt_BC_alpha", "alpha_BC", ("BC", "alpha")),
+        ("a_C", "a_C", ()), ("a_C_wrt_ec", "a_C", ("ec",)), ("F_B_X_wrt_F_X", "F_B_X", ("F_X",)),
+        ("alpha_BC_wrt_BC_alpha", "alpha_BC", ("BC", "alpha")), ("V_C_wrt_omega", "V_C", ("omega",)),
         ("V_C_wrt_omega0_omega0", "V_C", ("omega0", "omega0")),
-        ("V_C_wrt_omega", "V_C", ("omega",)),
-        ("F_B_X_wrt_F_X", "F_B_X", ("F_X",)),
         ("T_in_wrt_BC_m_rod", "T_in", ("BC", "m_rod")),
         ("Y_wrt_theta_nothing_known", "Y", ("theta", "nothing_known")),
     ],
-)
+)  # fmt: skip
 def test_parts(name, base, parameters):
     assert parts(name) == (base, parameters)
     assert joined(base, parameters) == name
@@ -46,35 +43,24 @@ def test_what_is_no_quantity_is_told_where_it_is(name):
         dx.evaluate(name, theta=1.0, ec=0.0, AB=1.0, BC=3.0)
 
 
-def test_a_quantity_by_name():
-    assert dx.quantities()["T_in"].unit == "N*m"
-    for kind in (KeyError, ValueError):
-        with pytest.raises(kind, match=r"^unknown quantity 'torque'; did you mean T_in"):
-            dx.quantities()["torque"]
-
-
 def test_the_catalogue_is_a_mapping_of_names():
     known = dx.quantities()
-    assert "a_C" in known
-    assert "a_D" not in known
-    assert 0 not in known
-    assert next(iter(known)) == "phi"
-    assert known.get("a_D") is None
-    assert dict(known)["V_C"].unit == "m/s"
+    assert ("a_C" in known, "a_D" in known, 0 in known, known.get("a_D")) == (True, False, False, None)
+    assert (next(iter(known)), dict(known)["V_C"].unit, known["T_in"].unit) == ("phi", "m/s", "N*m")
     point = {"theta": 1.0, "ec": 0.01, "AB": 0.1, "BC": 0.3, "omega0": 1.0}
     assert dx.evaluate([*known][:3], **point)
+    for kind in (KeyError, ValueError):
+        with pytest.raises(kind, match=r"^unknown quantity 'torque'; did you mean T_in"):
+            known["torque"]
 
 
 @pytest.mark.parametrize(
     ("name", "state", "there"),
     [
-        ("a_C_wrt_omega0", False, True),
-        ("a_C_wrt_omega0", True, False),
-        ("a_C_wrt_omega", True, True),
-        ("a_C_wrt_omega", False, False),
-        ("T_in_wrt_theta_m_rod", False, False),
+        ("a_C_wrt_omega0", False, True), ("a_C_wrt_omega0", True, False), ("a_C_wrt_omega", True, True),
+        ("a_C_wrt_omega", False, False), ("T_in_wrt_theta_m_rod", False, False),
     ],
-)
+)  # fmt: skip
 def test_whether_a_name_can_be_asked_for(name, state, there):
     assert has(name, state) is there
 

@@ -30,28 +30,15 @@ CALLS = {
 @pytest.mark.parametrize(
     ("call", "wrong", "name"),
     [
-        ("evaluate", "eccentricity", "ec"),
-        ("evaluate", "ab", "AB"),
-        ("evaluate", "speed", "omega0"),
-        ("evaluate", "n", "omega0"),
-        ("evaluate", "m", "m_slider"),
-        ("evaluate", "Theta", "theta"),
-        ("evaluate", "acuracy", "accuracy"),
-        ("grid", "eccentricity", "ec"),
-        ("grid", "crank", "AB"),
-        ("peak", "rod", "BC"),
-        ("tolerance", "offset", "ec"),
-        ("design_map", "bc", "BC"),
-        ("simulate", "omega0", "omega_start"),
-        ("simulate", "theta", "theta0"),
-        ("simulate", "m_piston", "m_slider"),
-        ("events", "omega", "omega0"),
-        ("feasibility", "e", "ec"),
-        ("inverse", "position", "Y"),
-        ("synthesize", "ratio", "time_ratio"),
+        ("evaluate", "eccentricity", "ec"), ("evaluate", "ab", "AB"), ("evaluate", "speed", "omega0"),
+        ("evaluate", "n", "omega0"), ("evaluate", "m", "m_slider"), ("evaluate", "Theta", "theta"),
+        ("evaluate", "acuracy", "accuracy"), ("grid", "crank", "AB"), ("peak", "rod", "BC"),
+        ("tolerance", "offset", "ec"), ("design_map", "bc", "BC"), ("simulate", "omega0", "omega_start"),
+        ("simulate", "theta", "theta0"), ("simulate", "m_piston", "m_slider"), ("events", "omega", "omega0"),
+        ("feasibility", "e", "ec"), ("inverse", "position", "Y"), ("synthesize", "ratio", "time_ratio"),
         ("harmonics", "friction", "mu"),
     ],
-)
+)  # fmt: skip
 def test_the_name_that_was_meant(call, wrong, name):
     with pytest.raises(TypeError) as complaint:
         CALLS[call](**{wrong: 0.1})
@@ -115,13 +102,11 @@ def test_a_quantity_that_was_meant(word, name):
 @pytest.mark.parametrize("names", [3, None, [["a_C"]]])
 def test_what_is_no_name_is_told(names):
     point = {"theta": 1.0, "ec": 0.0, "omega0": 1.0, **SIZES}
-    for options in ({}, {"quality": True}):
-        with pytest.raises(TypeError, match=r"expected the name of a quantity or a list of names"):
-            dx.evaluate(names, **point, **options)
-    with pytest.raises(TypeError, match=r"expected the name of a quantity or a list of names"):
-        dx.simulate(**RUN, m_slider=1.0, names=names)
-
-
-def test_a_peak_is_that_of_one_name():
+    wanted = r"expected the name of a quantity or a list of names"
+    for call, inputs in (
+        (dx.evaluate, point), (dx.evaluate, {**point, "quality": True}), (dx.simulate, RUN | {"m_slider": 1})
+    ):  # fmt: skip
+        with pytest.raises(TypeError, match=wanted):
+            call(names=names, **inputs)
     with pytest.raises(TypeError, match=r"peak: expected one name, such as 'a_C', got \['a_C'\]"):
         dx.peak(["a_C"], ec=0.0, omega0=1.0, **SIZES)

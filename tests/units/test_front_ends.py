@@ -228,31 +228,17 @@ def by_command(name, value, **others):
 
 
 READERS = {
-    "evaluate": by_evaluate,
-    "function": by_function,
-    "Machine": by_machine,
-    "scene": by_scene,
+    "evaluate": by_evaluate, "function": by_function, "Machine": by_machine, "scene": by_scene,
     "command": by_command,
-}
+}  # fmt: skip
 NUMBERS = [
-    ("ec", "10 mm", 0.01),
-    ("ec", "10mm", 0.01),
-    ("ec", "-0.5 inch", -0.0127),
-    ("AB", "1.25e-1 m", 0.125),
-    ("BC", "350 mm", 0.35),
-    ("BC", "3e1 cm", 0.3),
-    ("theta", "60 deg", 1.0471975511965979),
-    ("theta", "-90degree", -1.5707963267948966),
-    ("theta", "1.5", 1.5),
-    ("omega0", "1500rpm", 157.07963267948966),
-    ("omega0", "3 rad/s", 3.0),
-    ("alpha", "2 rad/s^2", 2.0),
-    ("m_slider", "500 g", 0.5),
-    ("I_rod", "80.6 kg mm2", 8.06e-5),
-    ("F_Y", "-4 kN", -4000.0),
-    ("g_Y", "-9810 mm/s^2", -9.81),
-    ("mu", "12 %", 0.12),
-]
+    ("ec", "10 mm", 0.01), ("ec", "10mm", 0.01), ("ec", "-0.5 inch", -0.0127), ("AB", "1.25e-1 m", 0.125),
+    ("BC", "350 mm", 0.35), ("BC", "3e1 cm", 0.3), ("theta", "60 deg", 1.0471975511965979),
+    ("theta", "-90degree", -1.5707963267948966), ("theta", "1.5", 1.5),
+    ("omega0", "1500rpm", 157.07963267948966), ("omega0", "3 rad/s", 3.0), ("alpha", "2 rad/s^2", 2.0),
+    ("m_slider", "500 g", 0.5), ("I_rod", "80.6 kg mm2", 8.06e-5), ("F_Y", "-4 kN", -4000.0),
+    ("g_Y", "-9810 mm/s^2", -9.81), ("mu", "12 %", 0.12),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("reader", READERS)
@@ -271,7 +257,12 @@ REFUSED = [
     ("ec", "", "it must be a number, or a number with a unit"),
     ("omega0", "25 Hz", 'it must be a quantity in rad/s, such as "1500 rpm"'),
     ("omega0", "1500 min^-1", "it must be a quantity in rad/s"),
-    ("omega0", "1500 1/min", 'a rate "per time" does not say of what'),
+    ("omega0", "1500 1/min", 'a rate "per time" does not say of what: write turns .*120 turn/min'),
+    ("omega0", "120/min", 'a rate "per time" does not say of what'),
+    ("omega0", "2 / s", 'a rate "per time" does not say of what'),
+    ("omega0", "120 mm/1", "it must be a number, or a number with a unit"),
+    ("omega0", "1/2 s", "it must be a number, or a number with a unit"),
+    ("omega0", "120 rev//min", "it must be a number, or a number with a unit"),
     ("AB", "-10 mm", "it must be a finite length >= 0"),
     ("AB", "30 MM", r"did you mean mm\? it must be a quantity in m"),
     ("m_rod", "3 KG", r"unknown unit; did you mean kg\? it must"),
@@ -351,17 +342,10 @@ SLIPS = [
     ({"F_Y": -8e7, "BC": 0.064}, "on a rod of 0.064 m: half as thick as it is long it would carry 78 GPa"),
 ]
 NO_SLIPS = [
-    {"theta": 20 * math.pi},
-    {"theta": 7.0},
-    {"theta": 59.123456789},
-    {"theta": "60 rad"},
-    {"theta": 60, "alpha": 0.5},
-    {"AB": 1e6},
-    {"BC": 123.456789012},
-    {"omega0": 314.0},
+    {"theta": 20 * math.pi}, {"theta": 7.0}, {"theta": 59.123456789}, {"theta": "60 rad"}, {"AB": 1e6},
+    {"theta": 60, "alpha": 0.5}, {"BC": 123.456789012}, {"omega0": 314.0}, {"F_Y": -6e4, "BC": 0.35},
     {"ec": 0.5, "AB": 0.1, "BC": 0.3},
-    {"F_Y": -6e4, "BC": 0.35},
-]
+]  # fmt: skip
 WARNING = {key: reader for key, reader in READERS.items() if key != "function"}
 
 
