@@ -23,7 +23,7 @@ from ..peaks.peak import peak
 from ..support.shown import shown
 from .averages import AVERAGES, angle_of, at_angle, average
 from .events.arrays import events_of_arrays
-from .events.found import VELOCITIES
+from .events.closed_form import VELOCITIES
 
 Array = NDArray[np.float64]
 Measure = str | tuple[Any, ...] | OwnMeasure

@@ -1,6 +1,6 @@
 """Dead centres, strokes and extreme angles.
 
-events  the public call
-found   values and derivatives from the closed form
-arrays  many designs, in NumPy
+events       the public call
+closed_form  values and derivatives from the closed form; the largest speeds
+arrays       many designs, in NumPy
 """

@@ -1,24 +1,17 @@
 """`events` for arrays of designs: closed forms in NumPy; velocities where the acceleration vanishes."""
 
-from collections.abc import Callable
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...compiler.languages.arrays import compile_arrays
 from ...evaluation.arrays import as_array, broadcast_shape
-from ...evaluation.evaluate import evaluate
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
-from ...mechanism.program import Variant
-from ...runtime.specialise import specialise
-from ...runtime.threads import have_wide_margins
-from ...support.roots import roots
+from ...peaks.peak import peak
 from ..feasibility.arrays import only_good
-from .found import VELOCITIES, DesignEvents, stroke_ends
+from .closed_form import VELOCITIES, DesignEvents, in_turn, velocity
 
 Array = NDArray[np.float64]
 
@@ -52,52 +45,22 @@ def _velocities(
     values: dict[str, Any], branch: int, status: NDArray[np.int8], inputs: tuple[Array, ...]
 ) -> dict[str, tuple[Array, Array, dict[str, Array]]]:
     """The largest |V_C| while the slider moves outward and inward: values, crank angles, derivatives."""
-    turns = (status == 0) | (status == 2)
-    *lengths, omega = (np.tile(a[turns], 2) for a in inputs)  # the designs outward, then inward
-    here: dict[str, Any] = {**dict(zip(LENGTHS, lengths, strict=True)), "branch": branch}
-    names = ["V_C", *(f"V_C_wrt_{p}" for p in (*LENGTHS, "omega0"))]
-    side = np.repeat([direction * branch for direction in VELOCITIES.values()], omega.size // 2)
-    ends = [np.stack(stroke_ends(values, way, branch))[:, turns] for way in (1, -1)]
-    growing = np.where((side > 0) == (omega >= 0.0), *(np.tile(end, 2) for end in ends))
-    theta, within = _fastest(growing[0], growing[1], here) if omega.size else (omega, omega > 0.0)
-    found = evaluate(names, theta=theta, omega0=omega, **here) if omega.size else dict.fromkeys(names, omega)
-    told = {name: side * found[name] for name in names} | {
-        "theta": np.where(theta < -np.pi / 2, theta + 2 * np.pi, theta)
-    }
-    sharp = np.tile(status[turns] == 2, 2) & ~within & (told["V_C"] != 0.0)
-    for name in names[1:4]:  # by the lengths: what is fastest at a change point grows as a root of the margin
-        told[name] = np.where(sharp, np.copysign(np.inf, told[name]), told[name])
+    turns, sharp = status == 0, np.argwhere(status == 2)
+    ec, AB, BC, omega = (part[turns] for part in inputs)
+    size, way = np.abs(omega), np.where(omega < 0.0, -1.0, 1.0)
     rows = {}
-    for place, name in enumerate(VELOCITIES):
-        spread = {each: np.full(turns.shape, np.nan) for each in told}
-        for each, column in told.items():
-            spread[each][turns] = column.reshape(2, -1)[place]
-        slopes = {p: spread[f"V_C_wrt_{p}"] for p in (*LENGTHS, "omega0")}
-        rows[name] = spread["V_C"], spread["theta"], slopes
+    for name, direction in VELOCITIES.items():
+        table = np.full((6, *status.shape), np.nan)
+        if turns.any():
+            kind = "max" if direction * branch > 0 else "min"
+            top = peak("V_C", kind=kind, ec=ec, AB=AB, BC=BC, omega0=way, branch=branch)
+            speed = np.abs(top["value"])
+            slopes = [direction * branch * size * top["gradient"][p] for p in LENGTHS]
+            table[:, turns] = size * speed, in_turn(top["theta"]), *slopes, way * speed
+        for k in map(tuple, sharp):
+            e, crank, rod, at = (float(part[k]) for part in inputs)
+            ends = {key: v[k] for key, v in values.items()}
+            table[:, *k] = velocity(direction, ends, branch, at, {"ec": e, "AB": crank, "BC": rod}, True)
+        value, theta, *gradient = table
+        rows[name] = value, theta, dict(zip((*LENGTHS, "omega0"), gradient, strict=True))
     return rows
-
-
-def _fastest(a: Array, b: Array, here: dict[str, Any]) -> tuple[Array, NDArray[np.bool_]]:
-    """The crank angles at which |V_C| is largest: where the acceleration vanishes between a and b, or an end.
-
-    Which of them are between a and b.
-    """
-    ends = evaluate(["V_C", "a_C"], theta=np.stack([a, b]), omega0=1.0, **here)
-    (one, other), (first, last) = np.abs(ends["V_C"]), ends["a_C"]
-    end = np.where(one >= other, a, b)  # no crank, or fastest at a change point
-    within = np.sign(first) * np.sign(last) < 0.0
-    sides = [here[name][within] for name in LENGTHS]
-    unit = np.frexp(sides[2])[1]  # in which no square leaves the range of doubles
-    sides = [np.ldexp(side, -unit) for side in sides]
-    acceleration = _acceleration(here["branch"], have_wide_margins(Variant(), *sides))
-    inside = (v[within] for v in (a, b, first, last))
-    end[within] = roots(lambda theta: acceleration(theta, *sides)[0], *inside)
-    return end, within
-
-
-@lru_cache(maxsize=4)
-def _acceleration(branch: int, wide: bool) -> Callable[..., tuple[Array, ...]]:
-    """a_C at a speed of 1 rad/s, for arrays of angles and lengths: a root needs no other inputs checked."""
-    fixed = ("branch", float(branch)), ("omega0", 1.0), ("alpha", 0.0)
-    program = specialise(("a_C",), Variant(wide_margins=wide), fixed)
-    return np.errstate(all="ignore")(compile_arrays(program._replace(inputs=("theta", *LENGTHS)), np))

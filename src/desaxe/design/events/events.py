@@ -1,10 +1,9 @@
 """`events`: the dead centres of a design, its strokes, and the extremes of its rod and slider."""
 
 from collections.abc import Mapping
-from math import copysign, inf, nan, pi
+from math import nan
 from typing import Any
 
-from ...evaluation.evaluate import evaluate
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
@@ -13,8 +12,7 @@ from ...mechanism.status import TurnStatus
 from ...runtime.request import as_number, check_common, with_known_inputs
 from ...support.answer import Answer
 from ...support.forks import IMPORTS
-from ...support.roots import root
-from .found import VELOCITIES, DesignEvents, stroke_ends
+from .closed_form import VELOCITIES, DesignEvents, velocity
 
 
 @with_known_inputs
@@ -76,13 +74,12 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
     result, gradient = {**found.values, "slow_stroke": slow, **found.places}, found.gradient
     parameters = (*LENGTHS, "omega0") if omega0 is not None else LENGTHS
     for name, direction in VELOCITIES.items():
-        value, theta, slopes = nan, nan, dict.fromkeys(parameters, nan)
+        value, theta, *slopes = [nan] * 6
         if found.status != 1:
-            side = direction * int(branch)  # of Y
-            ends = stroke_ends(found.values, side * forward, int(branch))
-            value, theta, slopes = _velocity(ends, side, int(branch), omega, lengths, found.status == 2)
+            sharp = found.status == 2
+            value, theta, *slopes = velocity(direction, found.values, int(branch), omega, lengths, sharp)
         result |= {name: value, f"theta_{name}": theta}
-        gradient[name] = {p: slopes[p] for p in parameters}
+        gradient[name] = dict(zip(parameters, slopes, strict=False))
     return Answer({**result, "gradient": gradient, "status": found.status}, units, TurnStatus)
 
 
@@ -92,32 +89,3 @@ def _units_per_angle(found: Mapping[str, Any]) -> dict[str, Any]:
     units |= dict.fromkeys(VELOCITIES, unit_of("Y", "theta"))
     units["gradient"] |= {name: slopes_of("Y_wrt_theta", LENGTHS) for name in VELOCITIES}
     return units
-
-
-def _velocity(
-    ends: tuple[float, float], side: int, branch: int, omega: float, lengths: dict[str, Any], sharp: bool
-) -> tuple[float, float, dict[str, float]]:
-    """The largest |V_C| between two dead centres: value, crank angle, derivatives.
-
-    sharp   one of them is a change point: if it is fastest there, that grows as a root of the margin
-    """
-
-    def at(theta: float, name: str, omega0: float = 1.0) -> float:
-        return float(evaluate(name, theta=theta, omega0=omega0, branch=branch, **lengths))
-
-    first, last = ends
-    rising, falling = at(first, "a_C"), at(last, "a_C")
-    if rising * falling < 0.0:
-        theta, sharp = root(lambda angle: at(angle, "a_C"), first, last), False
-    else:  # no crank, or it is fastest at the change point itself
-        theta = max(ends, key=lambda angle: abs(at(angle, "V_C")))
-    slopes = {p: side * at(theta, f"V_C_wrt_{p}", omega) for p in (*LENGTHS, "omega0")}
-    value = side * at(theta, "V_C", omega)
-    if sharp and value:
-        slopes |= {p: copysign(inf, slopes[p]) for p in LENGTHS}
-    return value, in_turn(theta), slopes
-
-
-def in_turn(theta: float) -> float:
-    """The angle shifted into the turn from -pi/2 to 3 pi/2."""
-    return theta + 2.0 * pi if theta < -pi / 2 else theta
