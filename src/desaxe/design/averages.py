@@ -16,7 +16,7 @@ from ..mechanism.catalogue import has
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
 from ..runtime.request import as_number
-from .turn.cycle import MOST_TURNS, Cycle
+from .turn.cycle import MOST_TURNS, Cycle, integrated
 from .turn.rows import input_rows
 
 Array = NDArray[np.float64]
@@ -44,30 +44,28 @@ def _averages(kind: str, names: list[str], cycle: Cycle, parameters: Mapping[str
     value, *slopes = (panels.values[name] for name in names)
     power = 1 if kind == "mean" else 2
     after, before = (end**power for end in np.moveaxis(panels.ends(value), -1, 0))
-    jump = before - np.roll(after, -1, axis=-1)
+    by = dict(zip(parameters, (power * value ** (power - 1) * slope for slope in slopes), strict=True))
     moves = cycle.moves(names[:1], panels.edges[:, 1:])
-    mean = panels.integral(value**power) / cycle.angle
-    sums = [panels.integral(power * value ** (power - 1) * slope) for slope in slopes]
-    moved = [(jump * moves[p]).sum(-1) if p in moves else 0.0 for p in parameters]
-    gradient = [(a + b) / cycle.angle for a, b in zip(sums, moved, strict=True)]
-    if kind == "mean":
-        return np.array([mean, *gradient])
-    with np.errstate(invalid="ignore", divide="ignore"):
-        rms = np.sqrt(mean)
-        return np.array([rms, *(slope / (2.0 * rms) for slope in gradient)])
+    total, gradient = integrated(panels, value**power, before - np.roll(after, -1, axis=-1), by, moves)
+    means = np.array([total, *gradient.values()]) / cycle.angle
+    if kind == "rms":
+        with np.errstate(invalid="ignore", divide="ignore"):
+            means[0] = np.sqrt(means[0])
+            means[1:] /= 2.0 * means[0]
+    return means
 
 
 def at_angle(
     angle: Any, name: str, designs: Mapping[str, Any], branch: int
 ) -> tuple[Array, dict[str, Array]]:
-    """A quantity at one angle, and its derivatives."""
-    inputs, sliders = _inputs(designs), designs.get("sliders")
-    slopes = _slopes(name, inputs)
-    if sliders is not None:
-        inputs = {p: v for p, v in designs.items() if v is not None and p != "theta"}
-        slopes = {p: f"{name}_wrt_{p}" for p, v in inputs.items() if np.ndim(v)}
-    found = evaluate([name, *slopes.values()], theta=angle_of(angle), branch=branch, **inputs)
-    shape = np.broadcast_shapes(*(np.shape(v) for v in inputs.values() if np.ndim(v)))
+    """A quantity at one angle, or at the angle of each design where `angle` is None, and its derivatives."""
+    given = {p: v for p, v in designs.items() if v is not None and p != "theta"}
+    given["theta"] = designs.get("theta") if angle is None else angle_of(angle)
+    varying = {p: f"{name}_wrt_{p}" for p, v in given.items() if np.ndim(v)}
+    inputs = {p: v for p, v in given.items() if p != "theta" or p in varying}
+    slopes = varying if "sliders" in given else _slopes(name, inputs)
+    found = evaluate([name, *slopes.values()], branch=branch, **given)
+    shape = np.broadcast_shapes(*(np.shape(given[p]) for p in varying))
     full = {n: np.broadcast_to(array, shape) for n, array in found.items()}
     return full[name], {p: full[slope] for p, slope in slopes.items()}
 

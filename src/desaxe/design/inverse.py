@@ -87,9 +87,14 @@ def inverse(
     else:
         theta, status = _angles_at_distance(position, lengths, branch, shape)
     result: dict[str, Any] = {"theta": theta}
-    with np.errstate(all="ignore"):
-        if V_C is not None:
-            _add_rates(result, arrays, lengths, branch, shape, status == DEAD_CENTRE)
+    if V_C is not None:
+        slope, bend = _values(theta, lengths, branch, ("Y_wrt_theta", "Y_wrt_theta_theta"))
+        slope[status == DEAD_CENTRE] = np.nan  # there the crank's rates are not determined
+        with np.errstate(all="ignore"):  # omega = V_C/Y', alpha = (a_C - omega^2 Y'')/Y', by theta
+            result["omega"] = np.broadcast_to(arrays["V_C"], shape)[..., None] / slope
+            if a_C is not None:
+                acceleration = np.broadcast_to(arrays["a_C"], shape)[..., None]
+                result["alpha"] = (acceleration - result["omega"] ** 2 * bend) / slope
     result["status"] = _status(status, arrays, shape)
     return Answer(result, units_by_name, InverseStatus)
 
@@ -122,20 +127,15 @@ def _angles_at_distance(
     form = closed_form(DEAD_CENTRES, ("Y_outer", "theta_outer"), branch=float(branch))
     outer, centre = (np.broadcast_to(part, shape) for part in form.arrays(*lengths))
     theta, status = _angles(outer - branch * distance, lengths, branch, shape)
-    inputs: dict[str, Any] = {
-        name: np.broadcast_to(side[..., None], theta.shape)
-        for name, side in zip(LENGTHS, lengths, strict=True)
-    }
     at_centre: dict[str, Any] = dict(zip(LENGTHS, lengths, strict=True))
-    names = ["s", "s_wrt_theta"]
     with np.errstate(all="ignore"):
         bend = evaluate("Y_wrt_theta_theta", theta=np.nan_to_num(centre), branch=branch, **at_centre)
         turn = np.sqrt(2.0 * distance / np.abs(bend))[..., None] * np.array([-1.0, 1.0])
         near = (distance < NEAR * lengths[1])[..., None] & np.isfinite(turn)
         theta = np.where(near, centre[..., None] + turn, theta)
         for _ in range(STEPS):
-            here = evaluate(names[:2], theta=np.nan_to_num(theta), branch=branch, **inputs)
-            step = (here["s"] - distance[..., None]) / here["s_wrt_theta"]
+            there, slope = _values(theta, lengths, branch, ("s", "s_wrt_theta"))
+            step = (there - distance[..., None]) / slope
             theta = np.where(np.isfinite(step) & (np.abs(step) < LARGEST), theta - step, theta)
     close = near[..., 0] & (status != 4)  # where the rounding of Y decides nothing
     at_outer = close & (distance == 0.0)
@@ -144,32 +144,13 @@ def _angles_at_distance(
     return np.sort(theta - TURN * np.ceil(theta / TURN - 0.5), axis=-1), status
 
 
-def _add_rates(
-    result: dict[str, Any],
-    arrays: dict[str, Array],
-    lengths: list[Array],
-    branch: int,
-    shape: tuple[int, ...],
-    flat: NDArray[np.bool_],
-) -> None:
-    """omega = V_C / Y', alpha = (a_C - omega^2 Y'') / Y', with Y' and Y'' by theta."""
-    theta = result["theta"]
-    sides = {
-        name: np.broadcast_to(v[..., None], theta.shape) for name, v in zip(LENGTHS, lengths, strict=True)
+def _values(theta: Array, lengths: list[Array], branch: int, names: tuple[str, str]) -> list[Array]:
+    """Quantities at both angles of each design, NaN where there is none."""
+    sides: dict[str, Any] = {
+        n: np.broadcast_to(v[..., None], theta.shape) for n, v in zip(LENGTHS, lengths, strict=True)
     }
-    known = np.isfinite(theta)
-    slope, bend = np.full(theta.shape, np.nan), np.full(theta.shape, np.nan)
-    if known.any():
-        here = {name: side[known] for name, side in sides.items()}
-        names = ["Y_wrt_theta", "Y_wrt_theta_theta"]
-        found = evaluate(names, theta=theta[known], branch=branch, **here)
-        slope[known], bend[known] = (found[name] for name in names)
-    slope[flat] = np.nan  # at a dead centre the crank's rates are not determined
-    speed = np.broadcast_to(arrays["V_C"], shape)[..., None]
-    result["omega"] = speed / slope
-    if "a_C" in arrays:
-        acceleration = np.broadcast_to(arrays["a_C"], shape)[..., None]
-        result["alpha"] = (acceleration - result["omega"] ** 2 * bend) / slope
+    here = evaluate(names, theta=np.nan_to_num(theta), branch=branch, **sides)
+    return [np.where(np.isfinite(theta), here[name], np.nan) for name in names]
 
 
 def _status(status: NDArray[np.int8], arrays: dict[str, Array], shape: tuple[int, ...]) -> Any:

@@ -1,7 +1,7 @@
 """`drive`: torque, power, work, flywheel and starting torque required over a turn."""
 
 from collections.abc import Mapping
-from math import copysign, inf, nan, sqrt
+from math import inf, nan, sqrt
 from typing import Any
 
 import numpy as np
@@ -9,10 +9,12 @@ import numpy as np
 from ...mechanism.inputs import Input
 from ...mechanism.keywords import with_known_keywords
 from ...mechanism.read import number_of
+from ...mechanism.status import DriveStatus
 from ...peaks.peak import peak
 from ...runtime.request import as_number
-from ...support.panels import Array, Panels
+from ...support.panels import Array
 from ...support.shown import shown
+from ..turn.cycle import integrated
 from ..turn.turn import CREEP, JAMS, NoCycleError, Turn, turn_of
 from .inertia import flywheel_for
 from .result import FIGURES, Drive
@@ -21,7 +23,7 @@ STALLED = 3
 FLUCTUATION = Input(
     "fluctuation", "1", "", 1e-9, "a number above 0, at least 1e-09, and below 2, where the crank stops"
 )
-SAME = 1e-9  # of an extreme value
+TWO_BALANCES = int(DriveStatus.TWO_FORCE_BALANCES)
 DIFFERENTIATED = tuple(name for name in FIGURES if not name.startswith("theta_"))
 
 
@@ -127,97 +129,74 @@ def _status(design: Turn) -> int:
     return 2 if design.margin == 0.0 else 0
 
 
+def _integrands(torque: Array, speed: Array) -> dict[str, tuple[Array, Any, Any]]:
+    """What is integrated over the angle; its derivatives by the torque, > 0 where it drives, and speed."""
+    driven = torque > 0.0
+    return {
+        "time": (1.0 / speed, 0.0, -1.0 / speed**2),
+        "mean": (torque / speed, 1.0 / speed, -torque / speed**2),
+        "square": (torque**2 / speed, 2.0 * torque / speed, -((torque / speed) ** 2)),
+        "net": (torque, 1.0, 0.0),
+        "work_in": (np.where(driven, torque, 0.0), np.where(driven, 1.0, 0.0), 0.0),
+        "work_out": (np.where(driven, 0.0, -torque), np.where(driven, 0.0, -1.0), 0.0),
+    }
+
+
 def _over_a_turn(
     design: Turn, found: dict[str, Any], slopes: dict[str, dict[str, float]], course: dict[str, Array]
 ) -> None:
     """The figures other than flywheel and starting torque, and the arrays of torque and power."""
-    names = ["T_in", *(f"T_in_wrt_{name}" for name in design.parameters)]
+    names, way = ["T_in", *(f"T_in_wrt_{name}" for name in design.parameters)], design.direction
     turn = design.panels(names)
     turn = turn.split(turn.roots(turn.values["T_in"]).tolist())
-    torque, way = turn.values["T_in"], design.direction
-    by = {name: turn.values[f"T_in_wrt_{name}"] for name in design.parameters}
-    alpha = design.numbers.get("alpha", 0.0)
-    speed = np.sqrt(design.numbers["omega0"] ** 2 + 2.0 * alpha * turn.x)
-    speed_by = {"omega0": design.numbers["omega0"] / speed, "alpha": turn.x / speed}
-    period = turn.integral(1.0 / speed)
-    mean = turn.integral(torque / speed) / period
-    square = turn.integral(torque**2 / speed) / period
-    net = way * turn.integral(torque)
-    driven = way * torque > 0.0
-    rms = sqrt(square)
-    found |= {
-        "period": period,
-        "torque_mean": mean,
-        "torque_rms": rms,
-        "work_in": turn.integral(np.where(driven, way * torque, 0.0)),
-        "work_out": turn.integral(np.where(driven, 0.0, -way * torque)),
-        "power_mean": net / period,
-    }
-    before, after = turn.ends(torque)[:, 1], np.roll(turn.ends(torque)[:, 0], -1)
-    jump, moves = before - after, design.moves(["T_in"], turn.edges[1:])
-    rate = np.sqrt(design.numbers["omega0"] ** 2 + 2.0 * alpha * turn.edges[1:])
-
-    def moving(name: str, jump: Array) -> float:
-        """The derivative of an integral by an input that moves the jumps of what is integrated."""
-        return float((jump * moves[name]).sum()) if name in moves else 0.0
-
-    for name, slope in by.items():
-        shorter = speed_by.get(name, 0.0) / speed**2 + 0.0 * speed  # what 1/speed loses
-        longer = -turn.integral(shorter) + 0.0
-        by_mean = turn.integral(slope / speed - torque * shorter) + moving(name, jump / rate)
-        by_square = turn.integral(2.0 * torque * slope / speed - torque**2 * shorter)
-        by_square += moving(name, (before**2 - after**2) / rate)
-        by_net = turn.integral(slope) + moving(name, jump)
-        by_in, by_out = (
-            turn.integral(np.where(part, side * slope, 0.0))
-            + moving(name, np.maximum(side * before, 0.0) - np.maximum(side * after, 0.0))
-            for part, side in ((driven, way), (~driven, -way))
-        )
-        rows = {
-            "period": longer,
-            "torque_mean": (by_mean - mean * longer) / period,
-            "torque_rms": (by_square - square * longer) / (2.0 * rms * period) if rms else 0.0,
-            "work_in": by_in,
-            "work_out": by_out,
-            "power_mean": (way * by_net - net / period * longer) / period,
+    torque = way * turn.values["T_in"]
+    start, alpha = design.numbers["omega0"], design.numbers.get("alpha", 0.0)
+    speed, rate = (np.sqrt(start**2 + 2.0 * alpha * theta) for theta in (turn.x, turn.edges[1:]))
+    speed_by = {"omega0": start / speed, "alpha": turn.x / speed}
+    after, before = turn.ends(torque).T
+    jumps = _integrands(before, rate), _integrands(np.roll(after, -1), rate)
+    moves = design.moves(["T_in"], turn.edges[1:])
+    total: dict[str, float] = {}
+    by: dict[str, dict[str, float]] = {}
+    for key, (value, by_torque, by_speed) in _integrands(torque, speed).items():
+        each = {
+            p: by_torque * way * turn.values[f"T_in_wrt_{p}"] + by_speed * speed_by.get(p, 0.0 * speed)
+            for p in design.parameters
         }
-        for figure, value in rows.items():
-            slopes[figure][name] = value
-    power_by = {n: way * (s * speed + torque * speed_by.get(n, 0.0)) for n, s in by.items()}
-    power = way * torque * speed
-    found["torque_peak"], place = _peak(design, "T_in", turn, torque, by, slopes["torque_peak"])
-    found["power_peak"], _ = _peak(design, "power_in", turn, power, power_by, slopes["power_peak"])
-    found["theta_peak"] = _in_cycle(place, design)
-    course |= {"theta": turn.places, "T_in": turn.samples(torque), "power_in": turn.samples(power)}
+        total[key], by[key] = integrated(turn, value, jumps[0][key][0] - jumps[1][key][0], each, moves)
+    period, longer = total["time"], by["time"]
+    mean, power = total["mean"] / period, total["net"] / period
+    rms = sqrt(total["square"] / period)
+    found |= {
+        "period": period, "torque_mean": way * mean, "torque_rms": rms, "power_mean": power,
+        "work_in": total["work_in"], "work_out": total["work_out"],
+    }  # fmt: skip
+    for p in design.parameters:
+        rows = {
+            "period": longer[p],
+            "torque_mean": way * (by["mean"][p] - mean * longer[p]) / period,
+            "torque_rms": (by["square"][p] - rms**2 * longer[p]) / (2.0 * rms * period) if rms else 0.0,
+            "work_in": by["work_in"][p],
+            "work_out": by["work_out"][p],
+            "power_mean": (by["net"][p] - power * longer[p]) / period,
+        }
+        for figure, slope in rows.items():
+            slopes[figure][p] = slope
+    for figure, name in (("torque_peak", "T_in"), ("power_peak", "power_in")):
+        top = _peak(design, name, "absmax")
+        found[figure], slopes[figure] = top["value"], top["gradient"]
+        found["theta_peak"] = top["theta"] if name == "T_in" else found["theta_peak"]
+    if "alpha" not in design.numbers:  # else turns differ
+        found["theta_peak"] %= design.angle
+    samples = turn.samples(torque)
+    course |= {"theta": turn.places, "T_in": way * samples, "power_in": samples * turn.samples(speed)}
 
 
-def _peak(
-    design: Turn,
-    name: str,
-    turn: Panels,
-    values: Array,
-    by: dict[str, Array],
-    gradient: dict[str, float],
-) -> tuple[float, float]:
-    """The largest magnitude and its angle; the derivatives there."""
-    value, place, inside = max(
-        (turn.extreme(values, sign) for sign in (1.0, -1.0)), key=lambda one: abs(one[0])
-    )
-    if not inside:
-        gradient |= _at_edge(design, name, "absmax", abs(value))
-        return abs(value), place
-    for parameter, slope in by.items():
-        sign = copysign(1.0, value) if value else nan
-        gradient[parameter] = sign * float(turn.at(np.array([place]), slope)[0])
-    return abs(value), place
-
-
-def _at_edge(design: Turn, name: str, kind: str, value: float, **other: Any) -> dict[str, float]:
-    """The derivatives of an extreme value that is reached between panels, at a jump or kink that may move."""
+def _peak(design: Turn, name: str, kind: str, **other: Any) -> dict[str, Any]:
+    """The extreme value over the cycle, its angle, and its derivatives by the parameters."""
     inputs = {n: x for n, x in {**design.numbers, **design.loads, **other}.items() if x is not None}
-    found = peak(name, kind=kind, theta=design.ends, branch=design.branch, **inputs)
-    same = abs(found["value"] - value) <= SAME * abs(value)
-    return {p: found["gradient"].get(p, nan) if same else nan for p in design.parameters}
+    top = peak(name, kind=kind, theta=design.ends, branch=design.branch, **inputs)
+    return {**top, "gradient": {p: top["gradient"].get(p, 0.0) for p in design.parameters}}
 
 
 def _flywheel(
@@ -240,29 +219,16 @@ def _starting(
     design: Turn, reverse: bool, found: dict[str, Any], slopes: dict[str, dict[str, float]]
 ) -> None:
     """The torque that starts the crank from any standstill, forwards or, in reverse, either way."""
-    names = [name for name in design.parameters if name not in ("omega0", "alpha")]
-    wanted = ["T_in", *(f"T_in_wrt_{name}" for name in names)]
-    best, gradient = -inf, dict.fromkeys(design.parameters, 0.0)
+    found["starting_torque"] = -inf
     for way in (design.direction, -design.direction)[: 2 if reverse else 1]:
-        creep: dict[str, Any] = {"omega0": way * CREEP, "alpha": None}
-        try:
-            turn = design.panels(wanted, **creep)
-        except NoCycleError as error:
-            found["starting_torque"] = inf if error.status == JAMS else nan
+        top = _peak(design, "T_in", "max" if way > 0.0 else "min", omega0=way * CREEP, alpha=None)
+        if top["status"] in (JAMS, TWO_BALANCES):
+            found["starting_torque"] = inf if top["status"] == JAMS else nan
             slopes["starting_torque"] = dict.fromkeys(design.parameters, nan)
             return
-        value, place, inside = turn.extreme(way * turn.values["T_in"], 1.0)
-        if value > best:
-            best, found["theta_start"] = value, place % design.angle
-            if inside:
-                here = {n: float(turn.at(np.array([place]), turn.values[f"T_in_wrt_{n}"])[0]) for n in names}
-            else:
-                here = _at_edge(design, "T_in", "max" if way > 0.0 else "min", way * value, **creep)
-            gradient |= {n: way * here[n] for n in names}
-    found["starting_torque"] = best if abs(best) > CREEP else 0.0
-    slopes["starting_torque"] = gradient
-
-
-def _in_cycle(theta: float, design: Turn) -> float:
-    """An angle shifted into the cycle; unchanged with alpha, where turns differ."""
-    return theta if "alpha" in design.numbers else theta % design.angle
+        if way * top["value"] > found["starting_torque"]:
+            found["starting_torque"], found["theta_start"] = way * top["value"], top["theta"] % design.angle
+            still = {p: 0.0 if p in ("omega0", "alpha") else way * by for p, by in top["gradient"].items()}
+            slopes["starting_torque"] = still
+    if abs(found["starting_torque"]) <= CREEP:
+        found["starting_torque"] = 0.0

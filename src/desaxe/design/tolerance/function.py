@@ -6,10 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...evaluation.evaluate import evaluate
-from ...mechanism.catalogue import has
-from ...mechanism.names import sensitivity
 from ...mechanism.status import ToleranceStatus
-from ..measures import Measure, measured
+from ..measures import Measure, Measured, measured
 from .uncertain import Array
 
 KINK = 0.1  # of the first-order change: slopes that jump by more have no derivative
@@ -17,37 +15,33 @@ ROUNDING = 1e-11  # of a value
 
 
 class SampledQuantity(NamedTuple):
-    """A quantity at a crank angle, or of a whole design, as a function of the varying inputs."""
+    """A measure as a function of the varying inputs; of a quantity at a crank angle ("at", None, name)."""
 
     measure: Measure
-    at_point: bool
     fixed: Mapping[str, Any]
     varying: tuple[str, ...]
     branch: int
 
+    @property
+    def at_point(self) -> str:
+        """The name of a quantity at a crank angle; "" of a measure of the design."""
+        return str(self.measure[2]) if isinstance(self.measure, tuple) and self.measure[1] is None else ""
+
     def values(self, columns: Mapping[str, Any]) -> Array:
         """The values over samples; NaN where undefined."""
-        if self.at_point:
-            found = evaluate(str(self.measure), branch=self.branch, **self.fixed, **columns)
-            found = np.broadcast_to(found, len(next(iter(columns.values()))))
-        else:
-            found = measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure].value
-        return np.asarray(found, float)
+        if not self.at_point:
+            return np.asarray(self._measured(columns).value, float)
+        found = evaluate(self.at_point, branch=self.branch, **self.fixed, **columns)
+        return np.broadcast_to(found, len(next(iter(columns.values()))))
 
     def slopes(self, columns: Mapping[str, Any]) -> Array:
         """The exact first derivatives over samples, one column for each input that varies."""
-        if self.at_point:
-            if "sliders" in self.fixed:
-                names = {p: f"{self.measure}_wrt_{p}" for p in self.varying}
-            else:
-                names = {p: sensitivity(str(self.measure), p) for p in self.varying}
-                names = {p: name for p, name in names.items() if has(name, self.state)}
-            found = evaluate([*names.values()], branch=self.branch, **self.fixed, **columns) if names else {}
-            gradient: Mapping[str, Any] = {p: found[name] for p, name in names.items()}
-        else:
-            gradient = measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure].gradient
+        gradient = self._measured(columns).gradient
         size = len(next(iter(columns.values())))
         return np.stack([np.broadcast_to(gradient.get(p, 0.0), (size,)) for p in self.varying], -1)
+
+    def _measured(self, columns: Mapping[str, Any]) -> Measured:
+        return measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure]
 
     def beside(self, centre: Mapping[str, Any], steps: Array) -> "Beside":
         """Values and slopes up to two steps beside a point, along each input."""
@@ -55,11 +49,6 @@ class SampledQuantity(NamedTuple):
         moves = (np.eye(n)[:, None, :] * steps * np.arange(-2.0, 3.0)[:, None]).reshape(-1, n)
         columns = {p: centre[p] + moves[:, i] for i, p in enumerate(self.varying)}
         return Beside(steps, self.values(columns).reshape(n, 5), self.slopes(columns).reshape(n, 5, n))
-
-    @property
-    def state(self) -> bool:
-        """True if the motion is a given state (omega)."""
-        return "omega" in self.fixed or "omega" in self.varying
 
 
 class Beside(NamedTuple):

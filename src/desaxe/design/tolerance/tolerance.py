@@ -159,26 +159,23 @@ def _check(distribution: str, sigmas: Any, samples: Any, seed: Any) -> None:
 
 
 def _function(name: Any, given: Mapping[str, Any], branch: int) -> SampledQuantity:
-    design = isinstance(name, (tuple, list)) or (is_named(name) and name != "margin")
+    several, state = "sliders" in given, "omega" in given
+    design = isinstance(name, (tuple, list)) or (is_named(name) and (name != "margin" or not several))
     fixed = {n: v for n, v in given.items() if not isinstance(v, Inexact)}
     varying = tuple(n for n in given if n not in fixed)
-    if design and "theta" in given:
+    if design and name != "margin" and "theta" in given:
         raise ValueError(f"theta: {name} is of a whole turn")
-    if "sliders" in given:
-        return SampledQuantity(checked(name) if design else name, not design, fixed, varying, branch)
-    if design or name == "margin":
-        for length in LENGTHS:
-            if length not in given:
-                as_number(length, None, LENGTHS, ("tolerance",))
-        return SampledQuantity(checked(name), False, fixed, varying, branch)
-    quantity(name, "omega" in given)
-    if name == "status":
-        raise ValueError("status is not a real number")
-    state = "omega" in given
-    for p in varying:
-        if p in inputs_of(name, state) and not has(sensitivity(name, p), state):
-            raise ValueError(f"tolerance of {name}: its derivative by {p} is not derived")
-    return SampledQuantity(name, True, fixed, varying, branch)
+    for length in LENGTHS if design and not several else ():
+        if length not in given:
+            as_number(length, None, LENGTHS, ("tolerance",))
+    if not design and not several:
+        quantity(name, state)
+        if name == "status":
+            raise ValueError("status is not a real number")
+        for p in varying:
+            if p in inputs_of(name, state) and not has(sensitivity(name, p), state):
+                raise ValueError(f"tolerance of {name}: its derivative by {p} is not derived")
+    return SampledQuantity(checked(name) if design else ("at", None, name), fixed, varying, branch)
 
 
 def _propagated(value: float, slopes: Array, rough: Sequence[Inexact]) -> tuple[Any, Any]:
@@ -232,7 +229,7 @@ def _worst_case(function: SampledQuantity, value: float, slopes: Array, rough: S
             row.name: Between(row.mean - float(row.tolerance or 0), row.mean + float(row.tolerance or 0))
             for row in rough
         }
-        found = _enclosed(str(function.measure), {**function.fixed, **ranges}, function.branch)
+        found = _enclosed(function.at_point, {**function.fixed, **ranges}, function.branch)
         if found is not None:
             return {"lower": found["lower"], "upper": found["upper"], "guaranteed": True}
     every = np.append(function.values(_corners(rough, slopes)), value)

@@ -181,3 +181,15 @@ def _any_near(gaps: Any, angle: float, shape: tuple[int, ...]) -> Array:
     for gap in gaps:
         near |= np.minimum(gap, angle - gap) < NEAR
     return near
+
+
+def integrated(
+    panels: Panels, value: Array, jump: Array, slopes: Mapping[str, Array], moves: Mapping[str, Array]
+) -> tuple[Any, dict[str, Any]]:
+    """The integral of a function over a cycle, and its derivatives from those of the function.
+
+    jump    of the function at the end of each panel, before - after; moves: of these ends, by input
+    """
+    by = {p: panels.integral(slope) for p, slope in slopes.items()}
+    by |= {p: by[p] + (jump * moves[p]).sum(-1) for p in by if p in moves}
+    return panels.integral(value), by
