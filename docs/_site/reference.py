@@ -112,36 +112,34 @@ def _verbatim(text):
 
 
 def scene():
-    """The keys of a scene file, from the types that check it."""
-    others = ("check", "peak", "picture", "results", "quantities")
-    top = _keys(schema.SceneFile, leave=(*schema.SECTIONS, *others))
-    tables = [
-        *((f"[{name}]", table) for name, table in schema.SECTIONS.items()),
-        ("[[check]]", schema.CheckTable), ("[[peak]]", schema.PeakTable),
-        ("[[peak.claim]]", schema.ClaimTable), ("[[picture]]", schema.PictureTable),
-        ("[results]", schema.Results), ("[quantities.NAME]", schema.QuantityTable),
-    ]  # fmt: skip
-    return "\n\n".join(
-        ["## At the top", top, *(f"## {head}\n\n{_doc(t)}\n\n{_keys(t)}" for head, t in tables)]
-    )
+    """The keys of a scene file, from the rules that check it."""
+    tables = [*((f"[{name}]", table) for name, table in schema.SECTIONS.items())]
+    tables += [(f"[[{name}]]", table) for name, table in schema.LISTED.items()]
+    tables.insert(-1, ("[[peak.claim]]", schema.CLAIM))
+    tables += [("[results]", schema.RESULTS), ("[quantities.NAME]", schema.QUANTITY)]
+    apart = (*schema.SECTIONS, *schema.LISTED, "results", "quantities")
+    sections = [f"## {head}\n\n{_about(table)}\n\n{_keys(table)}" for head, table in tables]
+    return "\n\n".join(["## At the top", _keys(schema.SCENE, leave=apart), *sections])
 
 
-def _doc(table):
+def _about(table):
     """What a table is for, without its own name in front."""
-    text = inspect.getdoc(table).partition(": ")[2]
-    return text[:1].upper() + text[1:]
+    text = table["description"].rpartition("]: ")[2]
+    return f"{text[:1].upper()}{text[1:]}."
 
 
 def _keys(table, leave=()):
-    fields = [field for field in schema.msgspec.structs.fields(table) if field.name not in leave]
-    rows = [f"| `{f.name}` | {_key(f.name, f.type)} | {'needed' if f.required else ''} |" for f in fields]
+    rows = [
+        f"| `{name}` | {_key(name, rule)} | {'needed' if name in table['required'] else ''} |"
+        for name, rule in table["properties"].items()
+        if name not in leave
+    ]
     return "\n".join(["| key | what it is | |", "|---|---|---|", *rows])
 
 
-def _key(name, kind):
-    known = INPUTS.get(name)
-    words = schema._allowed(kind).replace("|", "\\|").replace("{", "&#123;")  # no list of attributes
-    return f"{known.meaning} [{known.unit}]" if known else words
+def _key(name, rule):
+    words = rule["description"].replace("|", "\\|").replace("{", "&#123;")  # no list of attributes
+    return rule.get("title", words)
 
 
 def quantities():

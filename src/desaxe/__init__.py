@@ -56,7 +56,7 @@ PUBLIC = {
     "crossings": "desaxe.design.turn.crossings",
     "drive": "desaxe.design.drive.drive",
     "explore": "desaxe.scenes.explorer.explore",
-    "to_excel": "desaxe.scenes.stores.workbook",
+    "to_excel": "desaxe.scenes.stores.tables",
     "Crankshaft": "desaxe.machine.crankshaft",
     "Machine": "desaxe.machine.machine",
     "UnitWarning": "desaxe.mechanism.slips",

@@ -288,7 +288,7 @@ def test_process(tmp_path):
 
 def test_start_is_light():
     """One point with plain numbers loads neither NumPy nor any optional dependency."""
-    heavy = ("numpy", "numba", "pint", "msgspec", "xarray", "matplotlib", "sympy", "tqdm")
+    heavy = ("numpy", "numba", "pint", "xarray", "matplotlib", "sympy", "tqdm")
     code = f"""
 import sys
 from desaxe.cli import main
@@ -327,23 +327,18 @@ def test_closed_output(tmp_path):
 def test_missing_extra():
     code = f"""
 import sys
-sys.modules["msgspec"] = None
+sys.modules["xarray"] = None
 from desaxe.cli import main
 sys.exit(main(["run", {COMPACTOR!r}]))
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 2
-    assert done.stderr == "desaxe: error: desaxe run needs msgspec: python -m pip install 'desaxe[scene]'\n"
+    assert done.stderr == "desaxe: error: outputs needs xarray: python -m pip install 'desaxe[labelled]'\n"
 
 
 @pytest.mark.parametrize(
     ("words", "module", "told"),
     [
-        (
-            ["scene", "--schema"],
-            "msgspec",
-            "desaxe scene needs msgspec: python -m pip install 'desaxe[scene]'",
-        ),
         (["derive", "--check"], "sympy", "desaxe derive needs sympy: python -m pip install 'desaxe[derive]'"),
     ],
 )

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.scenes.json_schema import json_schema
-from desaxe.scenes.schema import SceneError
+from desaxe.scenes.schema import SceneError, json_schema
 from tests.compiler.languages.tools import imported
 
 SCENE = """
@@ -87,7 +86,42 @@ def test_over_Y_and_objects_in_a_mapping():
     np.testing.assert_allclose(written.run().dataset.T_in, right, rtol=1e-14)
 
 
+ELEMENTS = {  # a table -> Y, V_C, and the force of a spring or a damper there, by hand
+    '{ spring = "4 N/mm", free = "120 mm" }': (0.1, 3.0, 80.0),
+    "{ spring = 4000, free = 0.12 }": (0.15, 3.0, -120.0),
+    '{ damper = "200 N s/m" }': (0.1, 3.0, -600.0),
+    "{ damper = 200, quadratic = 0.8 }": (0.1, -3.0, 607.2),
+    "{ over_V = [[-2, 900], [0, 0], [2, -400]] }": (0.1, 1.0, -200.0),
+    '{ over_V = [-2, 0, 2], values = [0.9, 0, -0.4], value = "kN" }': (0.1, -1.0, 450.0),
+}
+
+
+@pytest.mark.parametrize("load", ELEMENTS)
+def test_springs_and_dampers(load, tmp_path):
+    """Their work on a massless crank is that of the force along the slider's axis: T_in = -F_Y dY/dtheta."""
+    at_Y, at_V, force = ELEMENTS[load]
+    scene = dx.scene(write(tmp_path, load))
+    element = scene.inputs["F_Y"]
+    where = {"Y": at_Y, "V_C": at_V}
+    assert element(*(where[name] for name in element.needs)) == pytest.approx(force, rel=1e-12)
+    design = {"theta": 1.0, "ec": 0.01, "AB": 0.04, "BC": 0.064}
+    motion = dx.evaluate(["Y", "V_C"], omega0=200.0, **design)
+    by_hand = element(*(motion[name] for name in element.needs))
+    torque = dx.evaluate("T_in", omega0=200.0, F_Y=element, **design)
+    assert torque == pytest.approx(-by_hand * motion["V_C"] / 200.0, rel=1e-12)
+
+
+def test_plain_numbers_of_a_spring_are_in_the_units_of_the_scene():
+    scene = {"outputs": ["T_in"], "units": "mm, deg", "loads": {"F_Y": {"spring": 4, "free": 120}}}
+    scene |= {"mechanism": {"ec": 10, "AB": 40, "BC": 64}, "motion": {"theta": [0, 90], "omega0": 10}}
+    assert dx.scene(scene).inputs["F_Y"] == dx.spring("4 N/mm", free="120 mm")
+
+
 REFUSED = {
+    "{ spring = 4000 }": "loads.F_Y.free is missing: the position along Y",
+    "{ spring = -1, free = 0 }": "loads.F_Y: stiffness = -1",
+    "{ damper = 1, free = 0 }": "loads.F_Y.free = 0: it has no place beside damper",
+    '{ over_V = "throttle.csv" }': "loads.F_Y: expected points such as [[-2, 900]",
     '{ over_theta = "nowhere.csv" }': 'loads.F_Y.over_theta = "nowhere.csv": No such file',
     "{ over_theta = [[0, 1], [1, 2, 3]] }": "points such as",
     "{ over_theta = [0, 1] }": "over_theta: point 1 has 1 number: expected points such as [[0, 0], [1.57",
@@ -96,7 +130,7 @@ REFUSED = {
     "{ over_Y = [[0, -400, 1, 2], [5, -300, 0, 3]] }": "point 1 has 4 numbers: expected points such as [[0.2",
     "{ over_Y = [] }": "loads.F_Y: over_Y: no points: expected points such as [[0.2",
     "{ over_theta = [[0, 1], [9, 2]] }": "the angles go over 9 rad",
-    "{ over_theta = [[0, 1], [1, 2]], step = 3 }": "loads.F_Y.step = 3.0: it has no place beside over_theta",
+    "{ over_theta = [[0, 1], [1, 2]], step = 3 }": "loads.F_Y.step = 3: it has no place beside over_theta",
     '{ start = 0, stop = 1, num = 3, kind = "linear" }': 'loads.F_Y.kind = "linear": it belongs to',
     "{ start = 0, num = 3 }": "loads.F_Y.stop is missing",
     "{ over = 3 }": "loads.F_Y.over = 3: unknown key",

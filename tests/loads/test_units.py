@@ -129,7 +129,7 @@ def test_units_that_are_those_of_the_machine_are_no_doubt():
 def test_a_file_of_a_scene_in_other_units_says_its_own(tmp_path):
     (tmp_path / "press.csv").write_text("225, 0\n475, -2\n", encoding="utf-8")
     file = str(tmp_path / "press.csv")
-    said = r'^scene: loads\.F_Y\.over_Y = ".*press\.csv": .*`Y \[mm\], outward \[kN\]`, or by Y = "mm"'
+    said = r'^scene: loads\.F_Y\.over_Y = ".*press\.csv": .*, or by Y = "mm", value = "kN" '
     with pytest.raises(SceneError, match=said):
         dx.scene({**SCENE, "units": UNITS, "loads": {"F_Y": {"over_Y": file}}})
     told = dx.scene({**SCENE, "units": UNITS, "loads": {"F_Y": {"over_Y": file, "Y": "mm", "value": "kN"}}})
@@ -137,7 +137,7 @@ def test_a_file_of_a_scene_in_other_units_says_its_own(tmp_path):
 
 
 @pytest.mark.parametrize("over", ["over_theta", "over_Y", "over_stroke"])
-def test_the_heading_that_is_proposed_for_a_file_serves(over, tmp_path):
+def test_the_units_that_are_proposed_for_a_file_serve(over, tmp_path):
     file, lines = tmp_path / "die.csv", "0.1, -4, 0\n2, -3, 0\n5, 0.5, 0\n"
     lines = lines.replace(", 0\n", "\n") if over == "over_theta" else lines  # every column has a heading
     load = {over: str(file), "kind": "linear"} | ({"dead_centre": "outer"} if over == "over_stroke" else {})
@@ -146,7 +146,8 @@ def test_the_heading_that_is_proposed_for_a_file_serves(over, tmp_path):
     with pytest.raises(SceneError, match=r"die\.csv") as told:
         dx.scene(scene)
     assert str(told.value).startswith(f"scene: loads.F_Y.{over} = ")
-    file.write_text(str(told.value).split("`")[1] + "\n" + lines, encoding="utf-8")
+    place = "deg" if over == "over_theta" else "mm"
+    file.write_text(f"place [{place}], force [kN], back [kN]\n{lines}", encoding="utf-8")
     wanted = dx.scene(scene).inputs["F_Y"]
     file.write_text("place, force, back\n" + lines, encoding="utf-8")
     keys = str(told.value).split(" or by ")[1].removesuffix(" beside the file").split(", ")

@@ -13,9 +13,8 @@ import pytest
 import desaxe as dx
 from desaxe.cli.command import main
 from desaxe.scenes.document.blocks import Document, Image, Section, Text
-from desaxe.scenes.document.html import html
-from desaxe.scenes.document.markdown import markdown
-from desaxe.scenes.document.write import write_document
+from desaxe.scenes.document.page import write_document
+from desaxe.scenes.document.render import html, markdown
 
 PRESS = dx.Machine(ec=10, AB=50, BC=200, omega0=300, m_slider=4, units="mm, deg, rpm")
 LOADED = PRESS.replace(F_Y=PRESS.over_theta([0, 30, 180], [-3000, 0, 0], kind="step"))

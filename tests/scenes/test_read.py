@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.scenes.reading.printed import read_percentage, read_printed
+from desaxe.scenes.parts.checks import read_percentage, read_printed
 from desaxe.scenes.schema import SceneError
 from desaxe.units.text import quantity_text
 from tests.example_scenes import COMPACTOR, SMALL, changed

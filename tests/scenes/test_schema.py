@@ -9,9 +9,8 @@ import pytest
 
 from desaxe.cli import main
 from desaxe.mechanism.inputs import INPUTS
-from desaxe.scenes.json_schema import json_schema, json_schema_text
 from desaxe.scenes.scene import scene
-from desaxe.scenes.schema import SceneError
+from desaxe.scenes.schema import SceneError, json_schema, json_schema_text
 from tests.example_scenes import SMALL, changed
 
 ROOT = Path(__file__).parents[2]
@@ -44,11 +43,11 @@ def test_examples(path):
 
 
 def test_every_input_tells_its_unit():
-    definitions = json_schema()["$defs"]
+    keys = json_schema()["properties"]
     told = {
-        name: rule["description"]
-        for section in ("Mechanism", "Motion", "Masses", "Loads")
-        for name, rule in definitions[section]["properties"].items()
+        name: rule["title"]
+        for section in ("mechanism", "motion", "masses", "loads")
+        for name, rule in keys[section]["properties"].items()
         if name != "branch"
     }
     assert set(told) == set(INPUTS)

@@ -19,7 +19,7 @@ import xarray as xr
 import zarr
 
 import desaxe as dx
-from desaxe.scenes.parts.stored import sweep_content
+from desaxe.scenes.parts.grid import sweep_content
 from desaxe.support.locks import locked
 from desaxe.sweeps.sweep import run_sweep
 from tests.effort import cases

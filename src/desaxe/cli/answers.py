@@ -53,7 +53,7 @@ def _write(answer: Any, path: Path, overwrite: bool) -> None:
 
         write(path, answer, {}, overwrite)
     elif path.suffix == ".xlsx":
-        from ..scenes.stores.workbook import to_excel
+        from ..scenes.stores.tables import to_excel
 
         to_excel(answer, path, overwrite=overwrite)
     elif path.suffix in TEXTS:

@@ -16,7 +16,7 @@ from .accuracy import worst_shares
 RUNTIME = ("numpy", "numba", "llvmlite")
 OPTIONAL = (
     "sympy", "mpmath", "xarray", "h5netcdf", "h5py", "zarr", "dask", "distributed", "matplotlib", "pint",
-    "msgspec", "tqdm", "scipy", "plotly", "python-flint",
+    "tqdm", "scipy", "plotly", "python-flint",
 )  # fmt: skip
 FEATURES = ("sse2", "sse4.2", "avx", "avx2", "fma", "avx512f", "neon", "sve")  # as LLVM calls them
 

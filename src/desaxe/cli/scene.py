@@ -63,7 +63,7 @@ def _check_scene(options: argparse.Namespace) -> int:
     if options.schema == (options.scene is not None):
         raise UsageError("which scene? give the path of a file, or --schema")
     if options.schema:
-        from ..scenes.json_schema import json_schema_text
+        from ..scenes.schema import json_schema_text
 
         print(json_schema_text(), end="")
         return 0

@@ -53,7 +53,7 @@ def _sweep(options: argparse.Namespace) -> int:
 
 def _swept(content: Any, options: argparse.Namespace) -> Any:
     """The sweep of a scene, on threads here or on a Dask cluster."""
-    from ..scenes.parts.stored import sweep_content
+    from ..scenes.parts.grid import sweep_content
 
     chosen = {name: getattr(options, name) for name in ("store", "memory", "overwrite")}
     with _client(options) as client:

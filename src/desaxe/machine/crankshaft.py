@@ -108,7 +108,7 @@ class Crankshaft(Machine):
 
     @classmethod
     def read(cls, path: str | PathLike[str], *, units: Any = None) -> "Crankshaft":
-        """The crankshaft of a scene file with a table [crankshaft] (extra `scene`).
+        """The crankshaft of a scene file with a table [crankshaft].
 
         The table has phase, bank, firing, spacing or position, I_shaft as they are given here; the other
         tables are those of one slider. Other results that the file asks for are left out.

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..evaluation.labels import source
 from ..scenes.document.blocks import Document, Lines, Section, TextTable, cell, image_of
-from ..scenes.document.write import require_document, write_document
+from ..scenes.document.page import require_document, write_document
 from ..support.files import as_path
 from ..support.shown import printed
 

@@ -159,7 +159,7 @@ class Machine(Mapping[str, Any]):
 
     @classmethod
     def read(cls, path: str | PathLike[str], *, units: str | Mapping[str, str] | None = None) -> "Machine":
-        """The machine of a scene file, with its units (extra `scene`); its crank angles are left out."""
+        """The machine of a scene file, with its units; its crank angles are left out."""
         inputs, own, made = inputs_of_scene(path)
         return restored(checked_inputs(inputs), own if units is None else UnitSystem.read(units), {}, made)
 
@@ -206,7 +206,7 @@ class Machine(Mapping[str, Any]):
         more     other inputs, such as ec=["1 mm", "2 mm"], as `replace` takes them; further keys of a scene,
                  such as title="...", peak=[...], results={"data": "values.nc"}
 
-        Needs the extra `scene`. `press.scene("T_in").run()` computes it.
+        `press.scene("T_in").run()` computes it.
         """
         return scene_of(self, outputs, more)
 

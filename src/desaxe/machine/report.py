@@ -10,8 +10,7 @@ from ..loads.load import Load
 from ..mechanism.names import LOADS
 from ..mechanism.own import Definition, used_by, using
 from ..mechanism.slips import warn_of_slips
-from ..scenes.document.content import Page
-from ..scenes.document.write import checked, require_document, write_page
+from ..scenes.document.page import Page, checked, require_document, write_page
 from ..scenes.run import compute
 from ..support.files import as_path
 from ..support.progress import Steps

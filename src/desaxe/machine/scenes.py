@@ -92,7 +92,7 @@ def _data(machine: Any, outputs: Any, more: Mapping[str, Any], loads: Mapping[st
     for section, table in SECTIONS.items():
         values = {
             name: loads[name] if name in loads else _written(machine, name)
-            for name in table.__struct_fields__
+            for name in table["properties"]
             if name in machine
         }
         if section == "motion":

@@ -12,12 +12,11 @@ from ..mechanism.own import change, using
 from ..mechanism.quantity_units import SI, UnitSystem
 from ..support.progress import Progress, progress_bar
 from ..support.shown import printable
-from .content import Content
+from .content import Content, Run
+from .document.results import files_text, results_text
 from .reading.read import plain_data, read
-from .reading.values import Value
-from .reading.written import units_written
-from .report import report
-from .run import Run, compute, steps_of, write_files
+from .reading.values import Value, units_written
+from .run import compute, steps_of, write_files
 from .schema import SceneError as SceneError
 
 
@@ -41,7 +40,9 @@ class SceneResult(Run):
 
     def report(self) -> str:
         """The text that `desaxe run` prints."""
-        return report(self.scene.content, self, self.scene.shown_in)
+        content = self.scene.content
+        texts = results_text(content, self, self.scene.shown_in), files_text(content, self)
+        return "\n\n".join(filter(None, texts))
 
     def __str__(self) -> str:
         return self.report()
@@ -109,7 +110,7 @@ class Scene:
 
 def _arrived(content: Content, name: str, shown_in: UnitSystem = SI) -> Scene:
     own = {definition.name: definition for definition in content.definitions}
-    change(lambda known: {**known, **{name: own[name] for name in own.keys() - known.keys()}})
+    change(lambda known: {**own, **known})
     return Scene(content, name, shown_in)
 
 
@@ -119,7 +120,7 @@ def scene(source: str | PathLike[str] | Mapping[str, Any]) -> Scene:
     The file is data: nothing in it is ever executed. Quantities that it defines (`[quantities.NAME]`) are
     known to every call from then on, as those of `define` are. Raises SceneError (a ValueError) that
     names the key, its value and what is allowed; OSError where the file cannot be read. Needs the extra
-    `scene`, and `units` for a unit that only pint knows.
+    `units` for a unit that only pint knows.
 
         dx.scene("examples/compactor.toml").run()
 

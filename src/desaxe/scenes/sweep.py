@@ -9,7 +9,7 @@ from ..mechanism.keywords import with_known_keywords
 from ..mechanism.own import using
 from ..support.progress import Progress
 from ..sweeps.sweep import run_sweep
-from .parts.stored import sweep_content
+from .parts.grid import sweep_content
 from .scene import Scene
 from .scene import scene as scene_of
 

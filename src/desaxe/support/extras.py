@@ -14,7 +14,7 @@ EXTRAS = {
         "scale": "dask distributed",
         "plot": "matplotlib",
         "units": "pint",
-        "scene": "msgspec tqdm",
+        "scene": "tqdm",
         "explore": "plotly",
         "excel": "xlsxwriter openpyxl",
         "fmu": "fmpy",

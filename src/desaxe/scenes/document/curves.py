@@ -7,21 +7,18 @@ import numpy as np
 
 from ...design.steady.steady import steady
 from ...evaluation.in_units import in_units
-from ...mechanism.names import STATUSES
 from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import PointStatus
 from ...support.forks import IMPORTS
-from ..content import Content
-from ..parts.motor import MotorResult
+from ..content import Content, Run
 from ..parts.pictures import drawn
-from ..run import Run
 from .blocks import Block, Section, Text, cell, image_of, thinned
+from .design import ALWAYS
 
 if TYPE_CHECKING:
     import xarray as xr
 
 PANELS, SAMPLES, CURVES = 3, 20_001, 6  # in a picture, along a curve, of a family
-ALWAYS = (*STATUSES, "margin")
 
 
 def curves(content: Content, run: Run, units: UnitSystem, elsewhere: Sequence[str]) -> Section | None:
@@ -37,20 +34,15 @@ def curves(content: Content, run: Run, units: UnitSystem, elsewhere: Sequence[st
         axes = drawn(picture, content, units)
         blocks.append(image_of(axes.figure, picture.title or f"{picture.quantity} over {picture.over}"))
     if run.steady is not None:
-        blocks += _on_motor(run.steady, content.branch, units)
+        with IMPORTS:
+            from ...plot import steady as draw
+
+        requested = run.steady.asked  # the first design's speed and torque over a period
+        first: dict[str, Any] = {n: v[0] for n, v in requested.axes.items()}
+        one = steady(torque=requested.torque, branch=content.branch, **requested.fixed, **first)
+        words = "Speed and torque of the first design over a period, and its loop on the motor's curve"
+        blocks += [] if one["status"] else [image_of(draw(in_units(one, units)).figure, words)]
     return Section("Curves", blocks) if blocks else None
-
-
-def _on_motor(result: MotorResult, branch: int, units: UnitSystem) -> list[Block]:
-    """The first design's speed and torque over a period."""
-    with IMPORTS:
-        from ...plot import steady as draw
-
-    asked = result.asked
-    first: dict[str, Any] = {n: v[0] for n, v in asked.axes.items()}
-    one = steady(torque=asked.torque, branch=branch, **asked.fixed, **first)
-    words = "Speed and torque of the first design over a period, and its loop on the motor's curve"
-    return [] if one["status"] else [image_of(draw(in_units(one, units)).figure, words)]
 
 
 def statuses(dataset: "xr.Dataset | None") -> list[str]:
@@ -83,14 +75,12 @@ def _picture(dataset: "xr.Dataset", dims: tuple[str, ...], names: list[str]) -> 
         from ...plot import panels
 
     over = "theta" if "theta" in dims else dims[0]
-    others = [dim for dim in dims if dim != over]
-    family, rest = (others[0] if others else None), others[1:]
-    part: Any = dataset[[*names]].isel(dict.fromkeys(rest, 0))
-    part.encoding = dataset.encoding
-    if family is not None:
-        part = _kept(part, family, CURVES)
-    if part.sizes[over] > SAMPLES:
-        part = _kept(part, over, SAMPLES)
+    family, *rest = [*(dim for dim in dims if dim != over), None]
+    rest = [dim for dim in rest if dim is not None]
+    most = {over: SAMPLES, family: CURVES}
+    chosen = {dim: thinned(list(range(dataset.sizes[dim])), n) for dim, n in most.items() if dim is not None}
+    part: Any = dataset[[*names]].isel({**dict.fromkeys(rest, 0), **chosen})
+    part.encoding = dataset.encoding  # what the dataset knows of its loads
     left = [f"{dim} = {cell(float(part[dim]))} {part[dim].attrs.get('units', '')}" for dim in rest]
     if family is not None and dataset.sizes[family] > CURVES:
         left.append(f"{CURVES} of {dataset.sizes[family]} values of {family}")
@@ -100,10 +90,3 @@ def _picture(dataset: "xr.Dataset", dims: tuple[str, ...], names: list[str]) -> 
     else:
         picture = panels(part, names, over=over, family=family)
     return [image_of(picture.figure, words), *([Text(words)] if left else [])]
-
-
-def _kept(part: Any, dim: str, most: int) -> Any:
-    """A few values of an axis; what the dataset knows of its loads stays."""
-    found = part.isel({dim: thinned(list(range(part.sizes[dim])), most)})
-    found.encoding = part.encoding
-    return found

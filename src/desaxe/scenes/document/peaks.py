@@ -16,13 +16,11 @@ from ...mechanism.status import PeakStatus
 from ...support.progress import Steps
 from ...support.shown import printed
 from ...sweeps.peak_step import WORDS
-from .. import schema
 from ..content import Content
-from ..parts.extremes import SIDEWAYS, ClaimResult, PeakResult, peaks_of
-from ..reading.peaks import peak_of
+from ..parts.peaks import SIDEWAYS, ClaimResult, PeakResult, peak_of, peaks_of
 from ..schema import SceneError
 from .blocks import Block, Section, Text, TextTable, cell, thinned
-from .designs import axes_of, with_unit
+from .design import axes_of, with_unit
 
 DESIGNS, ROWS = 1000, 24  # that are searched for peaks nobody named, that are listed
 HUGE = 1e6  # percent: more is written as a power of ten
@@ -38,7 +36,7 @@ def peaks_of_outputs(content: Content) -> Iterator[PeakResult]:
     for name in content.outputs:
         if not any(one.quantity == name for one in content.peaks):
             try:
-                requested = peak_of("report", schema.PeakTable(quantity=name), content.inputs, content.units)
+                requested = peak_of("report", {"quantity": name}, content.inputs, content.units)
             except SceneError:  # a status, or a quantity of the whole design
                 continue
             result = peaks_of(requested, content, Steps(1, None))
@@ -48,7 +46,7 @@ def peaks_of_outputs(content: Content) -> Iterator[PeakResult]:
 def peak(result: PeakResult, units: UnitSystem) -> Section:
     """A row for each design, its slopes, and the claims; in the units of its dataset."""
     one = result.peak
-    known = quantity(one.quantity, "omega" in one.axes or "omega" in one.fixed)
+    known = quantity(one.quantity, one.state)
     low, high = (f"{degrees(angle):g}" for angle in one.theta)
     title = one.title or f"{WORDS[one.kind].capitalize()} of {one.quantity}, {known.meaning}"
     blocks: list[Block] = [_designs(result, units)]
@@ -63,50 +61,42 @@ def _designs(result: PeakResult, units: UnitSystem) -> TextTable:
     one, dataset = result.peak, result.dataset
     angle = units.of("theta").unit
     scale = degrees(1.0) if angle == "rad" else 1.0
-    slopes = [dataset[n] for p in one.sensitivities if one.axes and (n := f"value_wrt_{p}") in dataset]
+    slopes = [p for p in one.sensitivities if one.axes and f"value_wrt_{p}" in dataset]
     has_sides, is_based = bool(dataset["side"].values.any()), "increase" in dataset
     heads = [*one.axes, SYMBOLS[one.kind].format(one.quantity), "at theta", *["side"] * has_sides]
-    heads += [f"over {_design(one.at_baseline, units)}"] * is_based
-    heads += [f"d/d({str(slope.name).removeprefix('value_wrt_')})" for slope in slopes]
+    heads += [f"over {_design(one.at_baseline, units)}"] * is_based + [f"d/d({p})" for p in slopes]
     units_of = [*(_unit(dataset[name]) for name in (*one.axes, "value")), "deg" if scale > 1.0 else angle]
-    units_of += [*[""] * (has_sides + is_based), *(_slope_unit(result, slope, units) for slope in slopes)]
+    units_of += [*[""] * (has_sides + is_based), *(_slope_unit(result, p, units) for p in slopes)]
     rows = []
     for index in thinned(list(np.ndindex(dataset["value"].shape)), ROWS):
+        at = {name: dataset[name].values[index] for name in ("value", "theta", "side")}
         row = [cell(dataset[name].values[k]) for name, k in zip(one.axes, index, strict=True)]
-        row += [cell(dataset["value"].values[index]), cell(scale * dataset["theta"].values[index])]
-        row += [f"{dataset['side'].values[index]:+d}".replace("+0", "0")] * has_sides
+        row += [cell(at["value"]), cell(scale * at["theta"])]
+        row += [f"{at['side']:+d}".replace("+0", "0")] * has_sides
         row += [_percent(float(dataset["increase"].values[index]))] if is_based else []
-        rows.append([*row, *(_slope(result, slope, index) for slope in slopes)])
+        rows.append([*row, *(_slope(result, p, index) for p in slopes)])
     return TextTable(heads, rows, units_of)
 
 
 def _gradient(result: PeakResult, units: UnitSystem) -> list[Block]:
     """The whole gradient of one design, a row for each parameter."""
-    slopes = [array for name, array in result.dataset.data_vars.items() if str(name).startswith("value_wrt_")]
-    rows = [
-        (
-            str(slope.name).removeprefix("value_wrt_"),
-            _slope(result, slope, ()),
-            _slope_unit(result, slope, units),
-        )
-        for slope in slopes
-    ]
+    names = [str(n).removeprefix("value_wrt_") for n in result.dataset if str(n).startswith("value_wrt_")]
+    rows = [(p, _slope(result, p, ()), _slope_unit(result, p, units)) for p in names]
     return [TextTable(("derivative by", "value", "unit"), rows)] if rows else []
 
 
-def _slope(result: PeakResult, slope: Any, index: tuple[int, ...]) -> str:
+def _slope(result: PeakResult, parameter: str, index: tuple[int, ...]) -> str:
     """A sensitivity; of either sign by what points to the side where two angles share the peak."""
-    value = float(slope.values[index])
-    sideways = str(slope.name).removeprefix("value_wrt_") in SIDEWAYS
-    return f"+-{cell(abs(value))}" if value and sideways and result.mirrored[index] else cell(value)
+    value = float(result.dataset[f"value_wrt_{parameter}"].values[index])
+    is_shared = value and parameter in SIDEWAYS and result.mirrored[index]
+    return f"+-{cell(abs(value))}" if is_shared else cell(value)
 
 
-def _slope_unit(result: PeakResult, slope: Any, units: UnitSystem) -> str:
+def _slope_unit(result: PeakResult, parameter: str, units: UnitSystem) -> str:
     """The unit of a slope: of one with respect to a mass or an inertia that of the value, divided."""
-    name = str(slope.name).removeprefix("value_wrt_")
-    if not INPUTS[name].unit.startswith("kg"):
-        return _unit(slope)
-    divisor = printed(units.of(name).unit)
+    if not INPUTS[parameter].unit.startswith("kg"):
+        return _unit(result.dataset[f"value_wrt_{parameter}"])
+    divisor = printed(units.of(parameter).unit)
     return f"{_unit(result.dataset['value'])}/{f'({divisor})' if ' ' in divisor else divisor}"
 
 

@@ -11,16 +11,16 @@ import numpy as np
 from ...evaluation.in_units import in_units
 from ...mechanism.quantity_units import UnitSystem
 from ...support.shown import printed
-from ..content import Content
+from ..content import Content, Run
 from ..parts.checks import CheckResult
 from ..parts.motor import MotorResult
 from ..parts.turning import FeasibilityResult
-from ..run import Run
-from ..stores.places import data_files
+from ..stores.files import data_files
 from ..stores.tables import table_of
 from .blocks import Block, Section, Text, TextTable, cell, thinned
-from .designs import with_unit
+from .design import with_unit
 from .peaks import ROWS, peak
+from .render import terminal
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,6 +28,16 @@ if TYPE_CHECKING:
 FEW = 12  # points whose values are printed
 GAPS = 5  # designs that cannot turn fully, reasons without a steady state
 FIGURES = ("omega_mean", "fluctuation", "power_mean", "work", "multiplier", "flywheel_inertia")
+
+
+def results_text(content: Content, run: Run, units: UnitSystem) -> str:
+    """The results in these units as text for a terminal."""
+    return terminal(content.title, [*results(content, in_units_shown(content, run, units), units)])
+
+
+def files_text(content: Content, run: Run) -> str:
+    """The files that were written, and those that were not, as text."""
+    return terminal("", [*files(content, run)])
 
 
 def in_units_shown(content: Content, run: Run, units: UnitSystem) -> Run:
@@ -129,15 +139,13 @@ def _few_values(dataset: "xr.Dataset") -> Iterator[TextTable]:
 
 def files(content: Content, run: Run) -> Iterator[Section]:
     """A row for each file that was written, and a line for each that was not."""
-    rows: list[tuple[str, str]] = []
-    if content.data is not None:
-        paths = [str(file) for file in data_files(content) if file in run.files]
-        parts = ["the values"] * bool(content.outputs) + [f"group {name}" for name in content.groups]
-        rows += zip([*paths, *[""] * len(parts)], parts, strict=False) if paths else []
+    paths = [str(file) for file in data_files(content) if file in run.files]
+    parts = ["the values"] * bool(content.outputs) + [f"group {name}" for name in content.groups]
+    rows = [*zip([*paths, *[""] * len(parts)], parts, strict=False)] if paths else []
     rows += [
-        (str(Path(picture.file)), f"{picture.quantity} over {picture.over}")
-        for picture in content.pictures
-        if Path(picture.file) in run.files
+        (one.file, f"{one.quantity} over {one.over}")
+        for one in content.pictures
+        if Path(one.file) in run.files
     ]
     if rows:
         yield Section("Written", [TextTable(("", ""), rows)])

@@ -23,7 +23,8 @@ from ...peaks import special
 from ...peaks.designs import KINDS, PeakPlan, plan_of
 from ...sweeps.peak_step import WORDS
 from ..content import Content
-from ..parts.extremes import Peak, columns_of, group_names
+from ..parts.peaks import Peak, group_names
+from ..setting import columns_of
 from .axes import arguments_of, axis_rows
 from .portable import left_out
 

@@ -1,18 +1,81 @@
-"""[[check]]: printed values beside the computed ones."""
+"""[[check]]: printed values beside the computed ones, with the digits and the unit of the printed one."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from decimal import ROUND_HALF_EVEN, Context, Decimal
 from typing import Any, NamedTuple
 
 from ...evaluation.evaluate import evaluate
 from ...mechanism.catalogue import quantity
 from ...mechanism.quantity_units import UnitSystem
-from ...scenes import schema
+from ...units.parse import factor_to_si
+from ...units.text import split_quantity
 from ..reading.needs import needs_of, require, require_known, single, with_others
-from ..reading.printed import Printed, read_printed
 from ..reading.values import Value, design_of, with_unit_in
-from ..schema import SceneError
+from ..schema import SceneError, shown
 from ..setting import Setting
+
+MOST_DIGITS = 15  # in front of the point; a larger number is written as a power of ten
+
+
+class Printed(NamedTuple):
+    """A printed number: its value, the power of ten of its last digit, and its unit as written.
+
+    `factor` turns a computed value into that unit.
+    """
+
+    value: Decimal
+    place: int
+    unit: str
+    factor: float = 1.0
+
+    def rounded(self, computed: float) -> Decimal:
+        """A computed value with the digits of the printed one."""
+        exact = Decimal(computed * self.factor)
+        if not exact.is_finite():
+            return exact
+        wide = Context(prec=max(28, exact.adjusted() - self.place + 3))
+        return exact.quantize(Decimal(1).scaleb(self.place), ROUND_HALF_EVEN, wide)
+
+    def agrees(self, computed: float) -> bool:
+        """True if a computed value rounds to the printed one."""
+        return self.rounded(computed) == self.value
+
+    def text(self, value: Decimal) -> str:
+        """A value written like the printed one; as a power of ten where that would fill the line."""
+        form = "f" if not value or value.adjusted() < MOST_DIGITS else ".6e"
+        return f"{value:{form}} {self.unit}".rstrip()
+
+
+def read_printed(key: str, written: str | float, digits: int | None, unit: str) -> Printed:
+    """The printed number that stands in a scene for a quantity in this SI unit.
+
+    Trailing zeros of a whole number are not taken as digits: -7740 has three, unless `digits` says
+    otherwise. A number without a unit is in the SI unit.
+    """
+    try:
+        number, written_unit = split_quantity(str(written))
+        value, unit_text = Decimal(number), written_unit or unit
+        same = unit_text == "%"
+        factor = 1.0 if same else float(1 / factor_to_si(f"{key} = {shown(written)}", unit_text, unit))
+    except ValueError as error:
+        message = str(error)
+        prefix = "" if message.startswith(key) else f"{key} = {shown(written)}: "
+        raise SceneError(f"{prefix}{message}") from None
+    exponent = int(value.as_tuple().exponent)
+    place = exponent if exponent < 0 else int(value.normalize().as_tuple().exponent)
+    if digits is not None:
+        place = value.adjusted() - digits + 1
+    return Printed(value, place, unit_text, factor)
+
+
+def read_percentage(key: str, written: str | float) -> Printed:
+    """A printed percentage, with or without its sign."""
+    text = str(written).strip()
+    try:
+        return read_printed(key, text.removesuffix("%"), None, "%")
+    except SceneError:
+        raise SceneError(f'{key} = {shown(written)}: it must be a percentage such as "33 %"') from None
 
 
 class CheckResult(NamedTuple):
@@ -41,19 +104,19 @@ class Check:
 
 
 def checks_of(
-    key: str, table: schema.CheckTable, inputs: Mapping[str, Value], units: UnitSystem
+    key: str, table: Mapping[str, Any], inputs: Mapping[str, Value], units: UnitSystem
 ) -> list[Check]:
     """The printed values of a [[check]], each with the inputs that it needs."""
-    there = with_others(inputs, design_of(f"{key}.at", table.at, units))
-    checks = []
-    for name, written in table.printed.items():
+    there = with_others(inputs, design_of(f"{key}.at", table.get("at", {}), units))
+    state, checks = "omega" in there, []
+    for name, written in table["printed"].items():
         place = f"{key}.printed.{name}"
-        require_known(place, name, "omega" in there)
+        require_known(place, name, state)
         needed = require(place, needs_of((name,), there), name, there)
-        printed = read_printed(
-            place, with_unit_in(units, name, written), table.digits, quantity(name, "omega" in there).unit
-        )
-        checks.append(Check(table.title, table.source, name, printed, single(place, needed, there)))
+        text, unit = with_unit_in(units, name, written), quantity(name, state).unit
+        printed = read_printed(place, text, table.get("digits"), unit)
+        design = single(place, needed, there)
+        checks.append(Check(table.get("title", ""), table.get("source", "printed"), name, printed, design))
     if not checks:
         raise SceneError(f"{key}.printed = {{}}: expected at least one printed value")
     return checks

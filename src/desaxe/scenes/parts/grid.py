@@ -1,15 +1,21 @@
-"""The grid of a scene: its plan, and the plan run in blocks that tell how far it is."""
+"""The grid of a scene: its plan, run block by block, or swept into a store."""
 
+import os
 from collections.abc import Mapping
 from math import prod
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...evaluation.axes import outer_of
 from ...evaluation.plan import Plan, plan_of
+from ...support.forks import IMPORTS
 from ...support.progress import Steps
+from ...sweeps.peak_step import PeakRequest
+from ...sweeps.request import SweepRequest, sweep_of
 from ..reading.values import Value
+from ..schema import SceneError
 from ..setting import Setting
 
 if TYPE_CHECKING:
@@ -48,3 +54,43 @@ def values_of_grid(setting: Setting, steps: Steps) -> "xr.Dataset":
 def arrays_of(inputs: Mapping[str, Value]) -> dict[str, Any]:
     """The inputs as `grid` takes them."""
     return {name: np.array(value) if isinstance(value, tuple) else value for name, value in inputs.items()}
+
+
+def request_of(content: Any) -> SweepRequest:
+    """The request of a scene's sweep; SceneError where its peaks are of other designs."""
+    if not (content.outputs or content.peaks):
+        raise SceneError("there is nothing to sweep: give outputs = [...] or [[peak]]")
+    inputs = dict(content.inputs)
+    if not content.outputs:
+        inputs = {**content.peaks[0].fixed, **content.peaks[0].axes}
+    for number, peak in enumerate(content.peaks, 1):
+        for name, value in {**peak.axes, **peak.fixed}.items():
+            if inputs.get(name, 0.0) != value:
+                raise SceneError(
+                    f"peak #{number}.over.{name}: a sweep takes peaks of the designs of its grid; "
+                    "sweep these in a scene of their own"
+                )
+    peaks = tuple(dict.fromkeys(PeakRequest(one.quantity, one.kind, one.theta) for one in content.peaks))
+    return SweepRequest(
+        list(content.outputs), arrays_of(inputs), content.branch, content.accuracy, content.threads,
+        content.reduction, peaks, "auto" if content.chunks is None else content.chunks, content.memory,
+    )  # fmt: skip
+
+
+def require_store(content: Any, overwrite: bool) -> None:
+    """Fail at the start where the sweep of a scene may not go to its store, or has no room."""
+    with IMPORTS:
+        from ...sweeps.store import checked
+
+    checked(sweep_of(request_of(content)), Path(os.path.abspath(content.store)), overwrite)
+
+
+def sweep_content(content: Any, **options: Any) -> "xr.Dataset":
+    """Run the sweep of a scene with options of `run_sweep`; those that are not given come from the scene."""
+    with IMPORTS:  # Zarr, which scenes without a store do without
+        from ...sweeps.sweep import run_sweep
+
+    if isinstance(options.get("chunks"), str) and options["chunks"] == "auto":
+        del options["chunks"]
+    given = {name: value for name, value in options.items() if value is not None}
+    return run_sweep(**{**request_of(content)._asdict(), "store": content.store, **given})

@@ -10,11 +10,10 @@ from ...evaluation.grid import grid
 from ...evaluation.in_units import in_units
 from ...mechanism.inputs import INPUTS
 from ...mechanism.quantity_units import UnitSystem
-from ...scenes import schema
 from ...support.forks import IMPORTS
 from ..reading.needs import require_for_grid, require_known, single, with_others
 from ..reading.values import Value, design_of, only_inputs, values_of
-from ..schema import SceneError, shown
+from ..schema import SceneError, hint, shown
 from ..setting import PlanRow, Setting
 from .grid import arrays_of
 
@@ -38,39 +37,37 @@ class PictureRequest:
 
 
 def picture_of(
-    key: str, table: schema.PictureTable, inputs: Mapping[str, Value], units: UnitSystem
+    key: str, table: Mapping[str, Any], inputs: Mapping[str, Value], units: UnitSystem
 ) -> PictureRequest:
     """The curves of a [[picture]]."""
-    name = table.quantity
-    only_inputs(f"{key}.family", table.family)
-    if len(table.family) > 1:
-        raise SceneError(f"{key}.family: one input makes a family, got {', '.join(table.family)}")
-    family = {n: values_of(f"{key}.family.{n}", n, written, units) for n, written in table.family.items()}
-    there = with_others(with_others(inputs, design_of(f"{key}.at", table.at, units)), family)
+    name, over, written = table["quantity"], table.get("over", "theta"), table.get("family", {})
+    only_inputs(f"{key}.family", written)
+    if len(written) > 1:
+        raise SceneError(f"{key}.family: one input makes a family, got {', '.join(written)}")
+    family = {n: values_of(f"{key}.family.{n}", n, value, units) for n, value in written.items()}
+    at = design_of(f"{key}.at", table.get("at", {}), units)
+    there = with_others(with_others(inputs, at), family)
     require_known(f"{key}.quantity", name, "omega" in there)
     needed = require_for_grid(f"{key}.quantity", (name,), there)
-    if table.over not in INPUTS:
+    if over not in INPUTS:
+        raise SceneError(f"{key}.over = {shown(over)}: unknown input; {hint(over, tuple(INPUTS))}")
+    if not isinstance(there.get(over), tuple) or over in family:
         raise SceneError(
-            f"{key}.over = {shown(table.over)}: unknown input; {schema.hint(table.over, tuple(INPUTS))}"
-        )
-    if not isinstance(there.get(table.over), tuple) or table.over in family:
-        raise SceneError(
-            f"{key}.over = {shown(table.over)}: it must be an input that has a list or range of values"
+            f"{key}.over = {shown(over)}: it must be an input that has a list or range of values"
         )
     member = next(iter(family), None)
-    curves = [n for n in (member, table.over) if n is not None]
+    curves = [n for n in (member, over) if n is not None]
     fixed = single(key, [n for n in needed if n not in curves], there)
-    return PictureRequest(
-        table.title, table.file, name, table.over, member, {**{n: there[n] for n in curves}, **fixed}
-    )
+    values = {**{n: there[n] for n in curves}, **fixed}
+    return PictureRequest(table.get("title", ""), table["file"], name, over, member, values)
 
 
-def draw(picture: PictureRequest, setting: Setting, shown_in: UnitSystem, overwrite: bool) -> Path:
+def draw(picture: PictureRequest, setting: Setting, shown_in: UnitSystem, overwrite: bool) -> list[Path]:
     """Draw the curves of a picture, in the units shown, into its file; return its path."""
     axes = drawn(picture, setting, shown_in)
     with IMPORTS:
         from ...plot import save
-    return save(axes.figure, picture.file, overwrite=overwrite)
+    return [save(axes.figure, picture.file, overwrite=overwrite)]
 
 
 def drawn(picture: PictureRequest, setting: Setting, shown_in: UnitSystem) -> Any:

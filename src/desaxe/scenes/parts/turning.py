@@ -9,7 +9,7 @@ import numpy as np
 from ...design.feasibility.feasibility import feasibility
 from ...evaluation.evaluate import evaluate
 from ..reading.values import Value
-from .extremes import columns_of
+from ..setting import columns_of
 
 MOST_DESIGNS = 10_000_000  # that are looked at for feasibility; a sweep has the margin of all
 MOST_SHOWN = 100  # designs that cannot turn fully, looked at one by one

@@ -1,36 +1,60 @@
-"""Loads of a scene that vary with the motion: from a file or from points, over any place."""
+"""Loads and motors of a scene: from a file, from points, or of a few numbers."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple, cast
 
+from ...loads.elements import damper, over_V, spring
 from ...loads.load import Load
-from ...loads.motors import Motor
+from ...loads.motors import Motor, kloss, over_omega
 from ...loads.pressure import PISTON
-from ...loads.resolve import plain_units
+from ...loads.resolve import plain_units, settled
 from ...loads.tabulated import over_stroke, over_theta, over_Y
 from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.read import in_si
 from ...support.extras import MissingExtraError
-from ..schema import Range, SceneError, Varying, shown
+from ..schema import SceneError, shown
 from .values import Value, values_of
 
 RANGE = ("start", "stop", "num", "step")
-BOTH = ("kind", "value", *(row.name for row in PISTON))  # keys of a table over either
+
+
+class LoadKind(NamedTuple):
+    """What makes a load; the keys of its columns and of their units; of its other options; points of it."""
+
+    maker: Any
+    columns: tuple[str, ...] = ()
+    units: tuple[str, ...] = ()
+    options: tuple[str, ...] = ()
+    example: str = ""
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The keys beside that of the load."""
+        return (*self.columns, *self.units, *self.options)
+
+
+GAS = ("kind", *(row.name for row in PISTON))
 WAYS = ("outward", "inward")
-OWN = {
-    "over_theta": ("values", "period", "theta", *BOTH),
-    "over_Y": (*WAYS, "Y", *BOTH),
-    "over_stroke": (*WAYS, "dead_centre", "distance", *BOTH),
+KINDS = {
+    "over_theta": LoadKind(over_theta, ("values",), ("theta", "value"), (*GAS, "period"),
+                           "[[0, 0], [1.57, -400]]"),
+    "over_Y": LoadKind(over_Y, WAYS, ("Y", "value"), GAS,
+                       "[[0.2, 0], [0.37, -400]], or [[0.2, 0, 0], [0.37, -400, -50]] with the way inward"),
+    "over_stroke": LoadKind(over_stroke, WAYS, ("distance", "value"), (*GAS, "dead_centre"),
+                            "[[0, -400], [0.005, 0]], or [[0, -400, 0], [0.005, 0, 0]] with the way inward"),
+    "over_V": LoadKind(over_V, ("values",), ("V_C", "value"), ("kind",), "[[-2, 900], [0, 0], [2, -400]]"),
+    "spring": LoadKind(spring, options=("free",)),
+    "damper": LoadKind(damper, options=("quadratic",)),
+}  # fmt: skip
+MOTORS = {
+    "over_omega": LoadKind(over_omega, (), ("omega", "torque"), ("kind",), "[[0, 30], [100, 0]]"),
+    "kloss": LoadKind(kloss),
 }
-COLUMNS = {"over_theta": ("values",), "over_Y": WAYS, "over_stroke": WAYS}
-UNITS = {"over_theta": "theta", "over_Y": "Y", "over_stroke": "distance"}
-POINTS = {
-    "over_theta": "[[0, 0], [1.57, -400]]",
-    "over_Y": "[[0.2, 0], [0.37, -400]], or [[0.2, 0, 0], [0.37, -400, -50]] with the way inward",
-    "over_stroke": "[[0, -400], [0.005, 0]], or [[0, -400, 0], [0.005, 0, 0]] with the way inward",
+NEEDED = {
+    "over_stroke": ("dead_centre", '"outer" or "inner", from which over_stroke measures'),
+    "spring": ("free", "the position along Y at which the spring has no force"),
 }
-MAKE: dict[str, Any] = {"over_theta": over_theta, "over_Y": over_Y, "over_stroke": over_stroke}
 
 
 def without_objects(data: Mapping[str, Any]) -> dict[str, Any]:
@@ -43,118 +67,135 @@ def without_objects(data: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def varying(key: str, name: str, written: Varying, folder: Path | None, units: UnitSystem) -> Value:
-    """The values of a range, or a load that varies with the motion."""
-    if any(getattr(written, over) is not None for over in OWN):
-        return load_of(key, written, folder, units)
-    given = {n: getattr(written, n) for n in written.__struct_fields__ if getattr(written, n) is not None}
-    wrong = next((n for n in given if n not in RANGE), None)
-    if wrong is not None:
-        raise SceneError(f"{key}.{wrong} = {shown(given[wrong])}: it belongs to {_one_of(wrong)}")
-    for end in ("start", "stop"):
-        if end not in given:
-            raise SceneError(f"{key}.{end} is missing: a range has start, stop, and num or step")
-    return values_of(key, name, Range(**given), units)
-
-
-def load_of(key: str, written: Varying, folder: Path | None, units: UnitSystem) -> Load:
-    """The load that a table of a scene stands for.
+def force_of(key: str, name: str, written: Any, folder: Path | None, units: UnitSystem) -> Value:
+    """The values of a force, or a load that varies with the motion.
 
     folder   of the scene file: a load's file is looked for there first, then in the current directory
     """
-    over = next(over for over in OWN if getattr(written, over) is not None)
-    given = {name: getattr(written, name) for name in written.__struct_fields__}
-    given = {name: value for name, value in given.items() if value is not None}
-    source: Any = given.pop(over)
-    wrong = next((name for name in given if name not in OWN[over]), None)
+    if isinstance(written, Load):
+        return cast(Value, _settled(key, name, written, units))
+    if not isinstance(written, Mapping) or (kind := _kind_of(written, KINDS)) is None:
+        if isinstance(written, Mapping):
+            _refuse(key, written, RANGE, lambda wrong: f"it belongs to {_kinds_with(wrong)}")
+        return values_of(key, name, written, units)
+    if kind in NEEDED and NEEDED[kind][0] not in written:
+        option, meaning = NEEDED[kind]
+        raise SceneError(f"{key}.{option} is missing: {meaning}")
+    load = _made(key, kind, KINDS[kind], written, folder, units)
+    plain = plain_units(name, load, units) if isinstance(written[kind], str) else {}
+    if plain and "period" not in written:
+        force = plain.pop("value", "") or plain.pop("pressure", "")
+        named = zip(KINDS[kind].units, (next(iter(plain.values()), ""), force), strict=True)
+        beside = ", ".join(f'{unit_key} = "{unit}"' for unit_key, unit in named if unit)
+        raise SceneError(
+            f"{key}.{kind} = {shown(written[kind])}: its plain numbers would be in SI units, but those of "
+            f"the scene are not: name the units of its columns in its heading, or by {beside} beside the file"
+        )
+    return cast(Value, _settled(key, name, load, units))
+
+
+def motor_of(key: str, written: Mapping[str, Any], folder: Path | None, units: UnitSystem) -> Motor:
+    """The motor of a table."""
+    kind = _kind_of(written, MOTORS)
+    if kind is None or len(MOTORS.keys() & written.keys()) > 1:
+        raise SceneError(f'{key}: a motor has over_omega = "motor.csv", [...] or kloss = {{...}}')
+    motor = _made(key, kind, MOTORS[kind], written, folder, units)
+    return cast(Motor, _settled(f"{key}.{kind}", "torque", motor, units))
+
+
+def _kind_of(written: Mapping[str, Any], kinds: Mapping[str, LoadKind]) -> str | None:
+    return next((kind for kind in kinds if kind in written), None)
+
+
+def _kinds_with(key: str) -> str:
+    """The loads that a key belongs to."""
+    return " or ".join(name for name, kind in KINDS.items() if key in kind.keys)
+
+
+def _refuse(key: str, written: Mapping[str, Any], allowed: Sequence[str], why: Any) -> None:
+    wrong = next((name for name in written if name not in allowed), None)
     if wrong is not None:
-        raise SceneError(f"{key}.{wrong} = {shown(given[wrong])}: it has no place beside {over}")
-    if over == "over_stroke" and "dead_centre" not in given:
-        raise SceneError(f'{key}.dead_centre is missing: "outer" or "inner", from which over_stroke measures')
+        raise SceneError(f"{key}.{wrong} = {shown(written[wrong])}: {why(wrong)}")
+
+
+def _settled(key: str, name: str, load: Any, units: UnitSystem) -> Any:
+    """A load whose numbers mean what they do in the scene; SceneError where they could be others."""
     try:
-        if isinstance(source, str):
-            return _from_file(over, source, given, folder, units)
-        return _from_points(over, source, given, units)
+        return settled(name, load, units)
+    except ValueError as error:
+        raise SceneError(f"{key}: {str(error).removeprefix(f'{name}: ')}") from None
+
+
+def _made(
+    key: str, name: str, kind: LoadKind, written: Mapping[str, Any], folder: Path | None, units: UnitSystem
+) -> Any:
+    """The load or motor of a table; SceneError where it is none."""
+    source, options = written[name], {n: v for n, v in written.items() if n != name}
+    if isinstance(source, list) and kind is MOTORS.get(name):
+        _refuse(key, options, kind.options, lambda _: "it has no place beside points")
+    _refuse(key, options, kind.keys, lambda _: f"it has no place beside {name}")
+    maker = type(kind.maker)(units or None)
+    try:
+        if isinstance(source, list):
+            return _from_points(name, kind, maker, source, options)
+        if isinstance(source, str) and hasattr(maker, "read"):
+            return _from_file(kind, source, options, folder, units)
+        if kind.columns:
+            raise ValueError(f"expected points such as {kind.example}")
+        return maker(**source) if isinstance(source, Mapping) else maker(source, **options)
     except MissingExtraError:
         raise
     except (ValueError, TypeError) as error:
-        raise SceneError(f"{key}: {error}") from None
+        raise SceneError(f"{key}{f'.{name}' if name in MOTORS else ''}: {error}") from None
     except OSError as error:
-        raise SceneError(f"{key}.{over} = {shown(source)}: {error.strerror or error}") from None
+        raise SceneError(f"{key}.{name} = {shown(source)}: {error.strerror or error}") from None
 
 
-def require_units_of_file(key: str, name: str, written: Varying, load: Any, units: UnitSystem) -> None:
-    """SceneError for plain numbers in a load's file, which are in SI units, in a scene in other ones."""
-    over = next((over for over in OWN if isinstance(getattr(written, over), str)), None)
-    needed = plain_units(name, load, units) if over and written.period is None else {}
-    if over is None or not needed:
-        return
-    force = needed.pop("value", "") or needed.pop("pressure", "")
-    place = next(iter(needed.values()), "")
-    both = getattr(load, "inward", None) is not None
-    heads = (name,) if over == "over_theta" else WAYS if both else WAYS[:1]
-    heading = [(UNITS[over], place), *((head, force) for head in heads)]
-    told = ", ".join(f"{head} [{unit}]" if unit else head for head, unit in heading)
-    beside = ", ".join(f'{n} = "{unit}"' for n, unit in ((UNITS[over], place), ("value", force)) if unit)
-    raise SceneError(
-        f"{key}.{over} = {shown(getattr(written, over))}: its plain numbers would be in SI units, but those "
-        f"of the scene are not: name the units of its columns by the heading `{told}`, or by {beside} beside "
-        "the file"
-    )
-
-
-def file_of(name: str, folder: Path | None) -> Path:
-    """The file of a table: beside the scene, else in the current directory."""
-    beside = None if folder is None else folder / name
-    return beside if beside is not None and beside.exists() else Path(name)
-
-
-def _from_file(over: str, name: str, given: dict[str, Any], folder: Path | None, units: UnitSystem) -> Load:
-    columns = [column for column in COLUMNS[over] if column in given]
+def _from_file(
+    kind: LoadKind, name: str, options: dict[str, Any], folder: Path | None, units: UnitSystem
+) -> Any:
+    """A load of a file beside the scene, else in the current directory."""
+    columns = [column for column in kind.columns if column in options]
     if columns:
         raise ValueError(f"{columns[0]} beside a file: the file has the values")
     for row in PISTON:  # plain numbers of the scene, where those of the file are in SI units
-        if isinstance(given.get(row.name), (int, float)):
-            given[row.name] = in_si(row, given[row.name], units)
-    made: Load = MAKE[over].read(file_of(name, folder), **given)
-    return made
+        if isinstance(options.get(row.name), (int, float)):
+            options[row.name] = in_si(row, options[row.name], units)
+    beside = None if folder is None else folder / name
+    return kind.maker.read(beside if beside is not None and beside.exists() else Path(name), **options)
 
 
-def _from_points(over: str, points: Sequence[Any], given: dict[str, Any], units: UnitSystem) -> Load:
-    beside = [given.pop(name, None) for name in (UNITS[over], "value")]
-    first, *others = COLUMNS[over]
-    if first not in given:
-        rows = [row if isinstance(row, tuple) else (row,) for row in points]
-        _require_points(over, [len(row) for row in rows])
+def _from_points(
+    name: str, kind: LoadKind, maker: Any, points: Sequence[Any], options: dict[str, Any]
+) -> Any:
+    along, value = (options.pop(key, None) for key in kind.units)
+    first = kind.columns[:1]
+    columns: list[Any] = []
+    if first and first[0] in options:
+        columns = [options.pop(column) for column in kind.columns if column in options]
+    if not columns:
+        rows = [row if isinstance(row, list) else [row] for row in points]
+        _require_points(name, kind, [len(row) for row in rows])
         points, *columns = (list(column) for column in zip(*rows, strict=True))
-        given |= dict(zip((first, *others), columns, strict=False))
-    if any(isinstance(point, tuple) for point in points):
-        raise ValueError(f"points with their values and {first} = [...] beside them: give one of them")
-    given |= {name: _with_unit(given[name], beside[1]) for name in COLUMNS[over] if name in given}
-    if "period" in given:
-        (given["period"],) = _with_unit([given["period"]], beside[0])
-    made: Load = type(MAKE[over])(units or None)(_with_unit(points, beside[0]), **given)
-    return made
+    elif any(isinstance(point, list) for point in points):
+        raise ValueError(f"points with their values and {kind.columns[0]} = [...] beside them: give one")
+    if "period" in options:
+        (options["period"],) = _with_unit([options["period"]], along)
+    return maker(_with_unit(points, along), *(_with_unit(column, value) for column in columns), **options)
 
 
-def _require_points(over: str, widths: list[int]) -> None:
+def _require_points(name: str, kind: LoadKind, widths: list[int]) -> None:
     """ValueError for points of other than two numbers, or three with the way inward, all alike."""
-    first, *others = COLUMNS[over]
     width = max(widths, key=widths.count, default=0)
-    odd = [index for index, own in enumerate(widths) if own != width]
-    if not odd and width in (2, 3 if others else 2):
+    odd = [index for index, count in enumerate(widths) if count != width]
+    if not odd and width in (2, 1 + len(kind.columns)):
         return
     wrong, rest = (odd[0], f", {'the others' if len(odd) == 1 else 'most'} {width}") if odd else (0, "")
     said = "no points"
     if widths:
         said = f"point {wrong + 1} has {widths[wrong]} number{'' if widths[wrong] == 1 else 's'}{rest}"
-    example = f"{POINTS[over]}; or {first} = [...] beside a list of places"
-    raise ValueError(f"{over}: {said}: expected points such as {example}")
-
-
-def _one_of(key: str) -> str:
-    """The loads that a key belongs to."""
-    return " or ".join(over for over, keys in OWN.items() if key in keys or key == over)
+    beside = f"; or {kind.columns[0]} = [...] beside a list of places" if kind.columns else ""
+    raise ValueError(f"{name}: {said}: expected points such as {kind.example}{beside}")
 
 
 def _with_unit(column: Sequence[Any], unit: str | None) -> list[Any]:

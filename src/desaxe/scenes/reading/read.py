@@ -1,9 +1,10 @@
 """From what is written in a scene file to inputs in SI units and names that exist."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from ...definitions.tables import read_definitions, redefine
 from ...evaluation.chunks import chunk_lengths
@@ -14,26 +15,22 @@ from ...evaluation.reductions.argument import (
     names_reduced,
     reductions_of,
 )
-from ...loads.load import Load
-from ...loads.resolve import settled
 from ...mechanism.inputs import INPUTS
 from ...mechanism.own import Definition, using
 from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.slips import warn_of_slips
 from ...runtime.request import accuracy_of
-from ...scenes import schema
 from ...support.memory import bytes_of
 from ...support.toml import read_toml
 from ..content import Content
 from ..parts.checks import checks_of
 from ..parts.motor import on_motor
+from ..parts.peaks import peak_of
 from ..parts.pictures import picture_of
-from ..schema import SECTIONS, SceneError, shown
-from .loads import require_units_of_file, varying, without_objects
+from ..schema import SECTIONS, SceneError, check, shown
+from .loads import force_of, without_objects
 from .needs import require_for_grid, require_known
-from .peaks import peak_of
-from .values import Value, values_of
-from .written import written_inputs
+from .values import Value, values_of, written_inputs
 
 PICTURES = (".png", ".svg", ".pdf")
 DATA = (".nc", ".zarr", ".csv", ".xlsx", ".npz")
@@ -45,10 +42,8 @@ def plain_data(source: str | PathLike[str] | Mapping[str, Any]) -> dict[str, Any
         return {str(name): _plain(value) for name, value in source.items()}
     if not isinstance(source, (str, PathLike)):
         raise TypeError(f"a scene is the path of a TOML file or a mapping, got {type(source).__name__}")
-    try:
+    with _refusing():
         return read_toml(Path(source))
-    except ValueError as error:
-        raise SceneError(str(error)) from None
 
 
 def _plain(value: Any) -> Any:
@@ -61,176 +56,137 @@ def _plain(value: Any) -> Any:
     return str(value) if isinstance(value, PathLike) else value
 
 
+@contextmanager
+def _refusing(prefix: str = "", shortened: Callable[[str], str] = str) -> Iterator[None]:
+    """Turn a ValueError or TypeError of the block into a SceneError with this prefix."""
+    try:
+        yield
+    except SceneError:
+        raise
+    except (ValueError, TypeError) as error:
+        raise SceneError(prefix + shortened(str(error))) from None
+
+
 def read(data: Mapping[str, Any], folder: Path | None = None) -> Content:
     """The content of a scene; SceneError names the first key that is wrong.
 
     folder   where the scene file is, and perhaps the files of its loads
     """
-    units = _units(data)
-    file = schema.decoded(without_objects(data))
-    own = _defined(data.get("quantities", {}))
+    with _refusing():
+        units = UnitSystem.read(data.get("units"))
+    check(without_objects(data))
+    with _refusing("quantities: "):
+        own = read_definitions(data.get("quantities", {}))
+        redefine(own)
     with using(own):
-        return _content(data, file, folder, units, own)
+        return _content(data, folder, units, own)
 
 
 def _content(
-    data: Mapping[str, Any],
-    file: schema.SceneFile,
-    folder: Path | None,
-    units: UnitSystem,
-    own: tuple[Definition, ...],
+    data: Mapping[str, Any], folder: Path | None, units: UnitSystem, own: tuple[Definition, ...]
 ) -> Content:
-    inputs = _inputs(data, file, folder, units)
+    inputs = _inputs(data, folder, units)
     warn_of_slips(written_inputs(data), units, 5, inputs)
-    branch = file.mechanism.branch
     if "omega" in inputs and "omega0" in inputs:
         raise SceneError(
             f"motion.omega = {inputs['omega']}: give omega0 (the law) or omega (a state), not both"
         )
-    outputs = tuple(dict.fromkeys(file.outputs))
+    outputs = tuple(dict.fromkeys(data.get("outputs", ())))
     for index, name in enumerate(outputs, 1):
         require_known(f"outputs #{index}", name, "omega" in inputs)
     if outputs:
         require_for_grid("outputs", outputs, inputs)
-    if not (outputs or file.peak or file.check or file.picture or file.steady):
+    if not (outputs or any(data.get(key) for key in ("peak", "check", "picture", "steady"))):
         raise SceneError(
             "the scene requests nothing: give outputs = [...], [[peak]], [[check]], [[picture]] or [steady]"
         )
-    _require_names(file)
-    checks = [
-        c
-        for index, table in enumerate(file.check, 1)
-        for c in checks_of(f"check #{index}", table, inputs, units)
-    ]
-    peaks = [peak_of(f"peak #{index}", table, inputs, units) for index, table in enumerate(file.peak, 1)]
-    pictures = [
-        picture_of(f"picture #{index}", table, inputs, units) for index, table in enumerate(file.picture, 1)
-    ]
-    motor = (
-        None
-        if file.steady is None
-        else on_motor(file.steady, data["steady"]["torque"], inputs, units, folder)
-    )
-    store, chunks, memory = _storage(file, outputs, inputs)
+    _require_names(data)
+
+    def each(key: str, one_of: Any) -> list[Any]:
+        """The requests of the tables of a list."""
+        numbered = enumerate(data.get(key, ()), 1)
+        return [one_of(f"{key} #{number}", table, inputs, units) for number, table in numbered]
+
+    checks, peaks, pictures = each("check", checks_of), each("peak", peak_of), each("picture", picture_of)
+    steady = data.get("steady")
+    accuracy = data.get("accuracy", "standard")
+    with _refusing(f"accuracy = {shown(accuracy)}: ", lambda text: text.partition(": ")[2]):
+        accuracy = accuracy_of(accuracy)
     return Content(
-        title=file.title, outputs=outputs, accuracy=_accuracy(file.accuracy), branch=branch, inputs=inputs,
-        reduction=_reduction(file, outputs, inputs, units), threads=file.threads, units=units,
-        checks=tuple(checks), peaks=tuple(peaks), pictures=tuple(pictures), steady=motor,
-        data=file.results.data, store=store, chunks=chunks, memory=memory, definitions=own,
+        title=data.get("title", ""), outputs=outputs, accuracy=accuracy,
+        branch=data.get("mechanism", {}).get("branch", 1), inputs=inputs,
+        reduction=_reduction(data.get("reduce", {}), outputs, inputs, units), threads=data.get("threads"),
+        units=units, checks=tuple(one for some in checks for one in some), peaks=tuple(peaks),
+        pictures=tuple(pictures), steady=None if steady is None else on_motor(steady, inputs, units, folder),
+        definitions=own, **_storage(data, outputs, inputs),
     )  # fmt: skip
 
 
 def _storage(
-    file: schema.SceneFile, outputs: tuple[str, ...], inputs: Mapping[str, Value]
-) -> tuple[str | None, Any, int | None]:
-    """The store of a sweep, its chunks, and the memory that they may take."""
-    results = file.results
-    if results.store is not None and results.data is not None:
-        raise SceneError(
-            f"results.store = {shown(results.store)}: give a store or a file (results.data), not both"
-        )
-    if results.store is not None and not (outputs or file.peak):
+    data: Mapping[str, Any], outputs: tuple[str, ...], inputs: Mapping[str, Value]
+) -> dict[str, Any]:
+    """The file of results, or the store of a sweep, its chunks, and the memory that they may take."""
+    results = data.get("results", {})
+    file, store, chunks = (results.get(key) for key in ("data", "store", "chunks"))
+    if store is not None and file is not None:
+        raise SceneError(f"results.store = {shown(store)}: give a store or a file (results.data), not both")
+    if store is not None and not (outputs or data.get("peak")):
         told = "give outputs or [[peak]], or results.data for a steady state alone"
-        raise SceneError(f"results.store = {shown(results.store)}: there is nothing to store; {told}")
-    try:
-        memory = bytes_of(results.memory)
-    except ValueError as error:
-        raise SceneError(f"results.{error}") from None
-    if results.chunks is not None and outputs:
-        axes = {name: len(value) for name, value in inputs.items() if isinstance(value, tuple)}
-        reduced = {axis.strip() for key in file.reduce for axis in key.split(",")}
-        try:
-            chunk_lengths(results.chunks, {n: s for n, s in axes.items() if n not in reduced}, 1)
-        except (ValueError, TypeError) as error:
-            raise SceneError(f"results.{error}") from None
-    return results.store, results.chunks, memory
-
-
-def _units(data: Mapping[str, Any]) -> UnitSystem:
-    """The units of the scene."""
-    try:
-        return UnitSystem.read(data.get("units"))
-    except (ValueError, TypeError) as error:
-        raise SceneError(str(error)) from None
-
-
-def _defined(tables: Mapping[str, Any]) -> tuple[Definition, ...]:
-    """Register the scene's own quantities."""
-    try:
-        own = read_definitions(tables)
-        redefine(own)
-    except (ValueError, TypeError) as error:
-        raise SceneError(f"quantities: {error}") from None
-    return own
-
-
-def _accuracy(written: str | float) -> str:
-    """The accuracy of a scene, by name or by a bound on the error."""
-    try:
-        return accuracy_of(written)
-    except ValueError as error:
-        raise SceneError(f"accuracy = {shown(written)}: {str(error).partition(': ')[2]}") from None
+        raise SceneError(f"results.store = {shown(store)}: there is nothing to store; {told}")
+    with _refusing("results."):
+        memory = bytes_of(results.get("memory"))
+        if chunks is not None and outputs:
+            reduced = {axis.strip() for key in data.get("reduce", ()) for axis in key.split(",")}
+            lengths = {name: len(value) for name, value in inputs.items() if isinstance(value, tuple)}
+            chunk_lengths(chunks, {n: size for n, size in lengths.items() if n not in reduced}, 1)
+    return {"data": file, "store": store, "chunks": chunks, "memory": memory}
 
 
 def _reduction(
-    file: schema.SceneFile, outputs: tuple[str, ...], inputs: Mapping[str, Value], units: UnitSystem
+    written: Mapping[str, Any], outputs: tuple[str, ...], inputs: Mapping[str, Value], units: UnitSystem
 ) -> Reductions | None:
     """The reduction that a scene asks for instead of the grid."""
-    if not file.reduce:
+    if not written:
         return None
     if not outputs:
         raise SceneError("reduce: there is nothing to reduce, give outputs = [...]")
     if "status" in outputs:
         raise SceneError(f'outputs #{outputs.index("status") + 1} = "status": with [reduce] {NO_STATUS}')
     axes = [name for name, value in inputs.items() if isinstance(value, tuple)]
-    try:
-        found = reductions_of(at_with_units(file.reduce, units), axes, outputs)
-        absent = [name for name in names_reduced(file.reduce) if name not in outputs]
-    except (ValueError, TypeError) as error:
-        raise SceneError(str(error)) from None
+    table = {axis: _as_tuple(taken) for axis, taken in written.items()}
+    with _refusing():
+        reduction = reductions_of(at_with_units(table, units), axes, outputs)
+        absent = [name for name in names_reduced(table) if name not in outputs]
     if absent:
         raise SceneError(f"reduce: {absent[0]} is not among the outputs")
-    return found
+    return reduction
 
 
-def _require_names(file: schema.SceneFile) -> None:
+def _as_tuple(part: Any) -> Any:
+    return tuple(map(_as_tuple, part)) if isinstance(part, list) else part
+
+
+def _require_names(data: Mapping[str, Any]) -> None:
     """SceneError for a file name whose suffix is no known format."""
-    data = file.results.data
-    if data is not None and not data.endswith(DATA):
-        ends = ", ".join(DATA)
-        raise SceneError(f"results.data = {shown(data)}: its name must end in one of {ends}")
-    if data is not None and not (file.outputs or file.peak or file.steady):
-        raise SceneError(f"results.data = {shown(data)}: there is nothing to write, give outputs = [...]")
-    for index, picture in enumerate(file.picture, 1):
-        if not picture.file.lower().endswith(PICTURES):
-            allowed = ", ".join(PICTURES)
-            raise SceneError(f"picture #{index}.file = {shown(picture.file)}: must end in one of {allowed}")
+    file = data.get("results", {}).get("data")
+    if file is not None and not file.endswith(DATA):
+        raise SceneError(f"results.data = {shown(file)}: its name must end in one of {', '.join(DATA)}")
+    if file is not None and not any(data.get(key) for key in ("outputs", "peak", "steady")):
+        raise SceneError(f"results.data = {shown(file)}: there is nothing to write, give outputs = [...]")
+    for index, picture in enumerate(data.get("picture", ()), 1):
+        if not picture["file"].lower().endswith(PICTURES):
+            key = f"picture #{index}.file = {shown(picture['file'])}"
+            raise SceneError(f"{key}: must end in one of {', '.join(PICTURES)}")
 
 
-def _inputs(
-    data: Mapping[str, Any], file: schema.SceneFile, folder: Path | None, units: UnitSystem
-) -> dict[str, Value]:
+def _inputs(data: Mapping[str, Any], folder: Path | None, units: UnitSystem) -> dict[str, Value]:
     """The inputs of the sections in the order in which they stand in the file."""
-    order = [(section, name) for section in data if section in SECTIONS for name in data[section]]
-    found: dict[str, Value] = {}
-    for section, name in order:
-        key, written = f"{section}.{name}", getattr(getattr(file, section), name)
-        if name not in INPUTS:
-            continue
-        if isinstance(data[section][name], Load):
-            found[name] = _settled(key, name, data[section][name], units)
-        elif isinstance(written, schema.Varying):
-            load = varying(key, name, written, folder, units)
-            require_units_of_file(key, name, written, load, units)
-            found[name] = _settled(key, name, load, units)
-        else:
-            found[name] = values_of(key, name, written, units)
-    return found
-
-
-def _settled(key: str, name: str, load: Value, units: UnitSystem) -> Value:
-    """A load whose numbers mean what they do in the scene; SceneError where they could be others."""
-    try:
-        return cast(Value, settled(name, load, units))
-    except ValueError as error:
-        raise SceneError(f"{key}: {str(error).removeprefix(f'{name}: ')}") from None
+    inputs: dict[str, Value] = {}
+    for section in data:
+        for name, written in data[section].items() if section in SECTIONS else ():
+            key = f"{section}.{name}"
+            if name in INPUTS and INPUTS[name].unit == "N":
+                inputs[name] = force_of(key, name, written, folder, units)
+            elif name in INPUTS:
+                inputs[name] = values_of(key, name, written, units)
+    return inputs

@@ -1,36 +1,42 @@
-"""The values of inputs as they are written in a scene, in SI units."""
+"""The inputs as they are written in a scene: in SI units, and the units of their texts."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from math import floor
+from typing import Any
 
 from ...loads.load import Load
 from ...mechanism.inputs import INPUTS, Input
-from ...mechanism.quantity_units import UnitSystem
+from ...mechanism.quantity_units import SI, UnitSystem
+from ...mechanism.ranges import Between
 from ...mechanism.read import read
-from ...scenes import schema
 from ...units.parse import exact
-from ...units.text import with_unit_of
-from ..schema import SceneError, shown
+from ...units.system import DIMENSIONS
+from ...units.text import split_quantity, with_unit_of
+from ..schema import SECTIONS, SceneError, hint, shown
 from .spread import MOST, spread
 
 Value = float | tuple[float, ...] | Load
 
+ENDS = ("start", "stop", "step")
+WORDS = ("printed", "quantities", "reduce")  # tables whose texts are no values of inputs
+# What the text of an input says of all quantities of its dimension; a rate does not follow the lengths.
+SHARED = {
+    si: name
+    for name, si in DIMENSIONS.items()
+    if name in ("length", "angle", "angular speed", "mass", "force")
+}
+RATES = {name: DIMENSIONS[name] for name in ("velocity", "acceleration", "jerk")}
 
-def values_of(
-    key: str,
-    name: str,
-    written: float | str | tuple[float | str, ...] | schema.Range,
-    units: UnitSystem,
-) -> Value:
+
+def values_of(key: str, name: str, written: Any, units: UnitSystem) -> Value:
     """A number, or the values of a list or range, in the SI unit of an input; plain ones are in `units`."""
-    if isinstance(written, tuple):
+    if isinstance(written, list):
         if not written:
             raise SceneError(f"{key} = []: expected at least one value")
-        numbered = enumerate(written, 1)
-        return tuple(number_of(f"{key} #{index}", name, part, units) for index, part in numbered)
-    if isinstance(written, schema.Range):
+        return tuple(number_of(f"{key} #{k}", name, part, units) for k, part in enumerate(written, 1))
+    if isinstance(written, Mapping):
         return _spread(key, name, written, units)
     return number_of(key, name, written, units)
 
@@ -55,42 +61,35 @@ def with_unit_in(units: UnitSystem, name: str, written: float | str) -> str:
     return str(with_unit_of(f"1 {units.of(name).unit}", text))
 
 
-def _spread(key: str, name: str, written: schema.Range, units: UnitSystem) -> tuple[float, ...]:
-    """The values of a range, both ends included."""
+def _spread(key: str, name: str, written: Mapping[str, Any], units: UnitSystem) -> tuple[float, ...]:
+    """The values of a range, both ends included; 0.1, 0.2, 0.3 of one are the doubles of these texts."""
     for end in ("start", "stop"):
-        number_of(f"{key}.{end}", name, getattr(written, end), units)
-    start, stop = (_exactly(name, end, units) for end in (written.start, written.stop))
-    if (written.num is None) == (written.step is None):
+        if end not in written:
+            raise SceneError(f"{key}.{end} is missing: a range has start, stop, and num or step")
+        number_of(f"{key}.{end}", name, written[end], units)
+    if ("num" in written) == ("step" in written):
         raise SceneError(f"{key}: a range has start, stop, and either num (how many) or step (how far apart)")
-    steps = written.num - 1 if written.num is not None else _steps(key, name, written, stop - start, units)
-    _require_few(key, steps)
-    return spread(start, stop, steps)
-
-
-def _require_few(key: str, steps: int | Fraction) -> None:
-    count = floor(abs(Fraction(steps))) + 1
+    start, stop = (_exactly(name, written[end], units) for end in ("start", "stop"))
+    steps = Fraction(written.get("num", 1) - 1)
+    if "step" in written:  # which may be negative, where the input itself may not
+        any_number = INPUTS[name]._replace(least=None, limit="a finite number")
+        read_number(any_number, f"{key}.step", written["step"], units)
+        step = _exactly(name, written["step"], units)
+        steps = (stop - start) / step if step else Fraction(0)
+    count = floor(abs(steps)) + 1
     if count > MOST:
         number = str(count) if count < 10**18 else f"{Decimal(count):.2e}"
         raise SceneError(f"{key}: {number} values are too many, at most {MOST}")
+    if not (steps > 0.5 and abs(steps - round(steps)) < 1e-6):
+        raise SceneError(
+            f"{key}.step = {shown(written['step'])}: it must lead from start to stop in a whole number of "
+            "steps"
+        )
+    return spread(start, stop, round(steps))
 
 
 def _exactly(name: str, written: float | str, units: UnitSystem) -> Fraction:
-    """A number exactly as written, so that 0.1, 0.2, 0.3 of a range are the doubles of these texts."""
     return exact(name, with_unit_in(units, name, written), INPUTS[name].unit)
-
-
-def _steps(key: str, name: str, written: schema.Range, length: Fraction, units: UnitSystem) -> int:
-    # A step may be negative, where the input itself may not.
-    any_number = INPUTS[name]._replace(least=None, limit="a finite number")
-    read_number(any_number, f"{key}.step", written.step or 0.0, units)
-    step = _exactly(name, written.step or 0.0, units)
-    _require_few(key, length / step if step else Fraction(0))
-    count = float(length / step) if step else 0.0
-    if not (count > 0.5 and abs(count - round(count)) < 1e-6):
-        raise SceneError(
-            f"{key}.step = {shown(written.step)}: it must lead from start to stop in a whole number of steps"
-        )
-    return round(count)
 
 
 def design_of(key: str, written: Mapping[str, float | str], units: UnitSystem) -> dict[str, float]:
@@ -103,4 +102,42 @@ def only_inputs(key: str, names: Iterable[str]) -> None:
     """SceneError for a key that is no input."""
     for name in names:
         if name not in INPUTS:
-            raise SceneError(f"{key}.{name}: unknown input; {schema.hint(name, tuple(INPUTS))}")
+            raise SceneError(f"{key}.{name}: unknown input; {hint(name, tuple(INPUTS))}")
+
+
+def written_inputs(data: Mapping[str, Any]) -> dict[str, Any]:
+    """The inputs as the scene has them, of a range its ends: what slips of units are looked for in."""
+    pairs = [pair for section in SECTIONS for pair in data.get(section, {}).items()]
+    return {
+        name: Between(value.get("start"), value.get("stop")) if isinstance(value, Mapping) else value
+        for name, value in pairs
+    }
+
+
+def units_written(data: Mapping[str, Any]) -> UnitSystem:
+    """The units that the texts of a scene are written in: "60 mm" says mm of ec, and of lengths at all.
+
+    The first text of an input counts. Velocities, accelerations and sensitivities stay in SI units.
+    """
+    units: dict[str, str] = {}
+    for name, unit in _written_units(data):
+        units.setdefault(name, unit)
+        dimension = SHARED.get(INPUTS[name].unit)
+        if dimension is not None:
+            units.setdefault(dimension, unit)
+    return UnitSystem(UnitSystem.read({**RATES, **units}).units, quotients=False) if units else SI
+
+
+def _written_units(part: Any, key: str = "") -> Iterator[tuple[str, str]]:
+    """Input and unit of every text of an input, in the order in which they stand in the scene."""
+    if isinstance(part, Mapping):
+        for name, value in part.items():
+            if name not in WORDS:
+                yield from _written_units(value, key if name in ENDS else str(name))
+    elif isinstance(part, list):
+        for value in part:
+            yield from _written_units(value, key)
+    elif isinstance(part, str) and key in INPUTS and part.strip()[:1] in "+-.0123456789":
+        unit = split_quantity(part)[1]
+        if unit:
+            yield key, unit

@@ -1,7 +1,5 @@
-"""Files and stores of a scene, and the places where they go.
+"""Files and stores of a scene.
 
-places       what a run needs and where it writes, looked at before it computes
-files        NetCDF, Zarr, CSV, xlsx, npz
-tables       a labelled result as rows, units in the headings
-workbook     sheets of an .xlsx file
+files   NetCDF, Zarr, CSV, xlsx, npz; what a run needs and where it writes, looked at before it computes
+tables  results as rows, units in the headings; workbooks of them
 """

@@ -2,50 +2,131 @@
 
 A file, or a Zarr store, appears whole or not at all: it is written beside its place, then swapped in. The
 tables of a CSV are several files, each of them whole. What desaxe did not write is left as it is, unless it
-may be overwritten.
+may be overwritten. What a run needs and where it writes is looked at before anything is computed.
 """
 
 import csv
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping
+import shutil
+from collections.abc import Callable, Iterable, Mapping
+from importlib import import_module
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...evaluation.labels import source
-from ...support.files import check_target, kind_of, require_space, staging, swap_in
+from ...support.extras import needed
+from ...support.files import check_target, kind_of, require_space, require_writable, staging, swap_in
 from ...support.forks import IMPORTS
+from ...support.memory import size_text
 from ...support.shown import printable
-from ...support.written import require_ours, sign_archive
-from .tables import table_of
-from .workbook import sheets_of, write_workbook
-
-_NETCDF_EXTRA = 65_536  # bytes for what HDF5 writes besides the numbers of a group
+from ...support.written import require_ours, require_path, sign_archive
+from ..content import Content
+from ..parts.grid import require_store
+from ..schema import SceneError
+from .tables import require_room, sheets_of, table_of, write_workbook
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    Writer = Callable[[Path, xr.Dataset | None, Mapping[str, xr.Dataset]], None]
+    Parts = Mapping[str, xr.Dataset]
+    Writer = Callable[[Path, Parts], None]
+
+VALUES = "values"  # the part that is no group
+STORE = ("zarr.json", ".zgroup", ".zattrs", ".zmetadata")  # at the top of a Zarr store
+NETCDF_EXTRA = 65_536  # bytes for what HDF5 writes besides the numbers of a group
+LEAST = {".nc": 8, ".npz": 8, ".csv": 4, ".xlsx": 1}  # bytes that a number takes in a file, at least
+MODULES = {
+    ".nc": {"results.data": "h5netcdf", "the file of results.data": "h5py"},
+    ".zarr": {"results.data": "zarr"},
+    ".xlsx": {"results.data": "xlsxwriter"},
+}
 
 
-def requirements_of(data: str) -> dict[str, str]:
-    """The kind of file that a name stands for, and the module that writes it."""
-    return {
-        ".nc": {"results.data": "h5netcdf", "the file of results.data": "h5py"},
-        ".zarr": {"results.data": "zarr"},
-        ".xlsx": {"results.data": "xlsxwriter"},
-    }.get(Path(data).suffix, {})
+# ---- before the run ------------------------------------------------------------------------------
+
+
+def require_modules(content: Content) -> None:
+    """Fail early if an optional dependency is missing."""
+    modules = {"outputs": "xarray"} if content.outputs else {}
+    modules |= {"results.store": "zarr", "a results.store": "dask"} if content.store is not None else {}
+    modules |= {"[[peak]]": "xarray"} if content.peaks else {}
+    modules |= {} if content.data is None else MODULES.get(Path(content.data).suffix, {})
+    pictures = {"[[picture]]": "matplotlib", "the values of a [[picture]]": "xarray"}
+    for what, module in (modules | (pictures if content.pictures else {})).items():
+        with needed(what):
+            import_module(module)
+
+
+def require_places(content: Content, overwrite: bool) -> None:
+    """Fail at the start where something cannot be written, or would take the place of what is not ours."""
+    places: dict[str, str] = {}
+    for key, path in _places(content):
+        place = os.path.abspath(path)
+        if place in places:
+            raise SceneError(f"{key} = {str(path)!r}: {places[place]} is written there")
+        places[place] = key
+        if key == "results.data":
+            check_place(path, overwrite)
+            require_writable(path)
+        elif key != "results.store":
+            require_path(path, overwrite)
+    if content.store is not None:
+        require_store(content, overwrite)
+    if content.data is not None and content.outputs and content.reduction is None:
+        _require_room(content, Path(content.data))
+
+
+def _places(content: Content) -> list[tuple[str, Path]]:
+    """Each file and store of a scene, by its key."""
+    places = [("results.data", file) for file in data_files(content)]
+    places += [(f"picture #{k}.file", Path(one.file)) for k, one in enumerate(content.pictures, 1)]
+    return places + ([] if content.store is None else [("results.store", Path(content.store))])
+
+
+def data_files(content: Content) -> list[Path]:
+    """The files of results.data."""
+    if content.data is None:
+        return []
+    return files_of(Path(content.data), [*[VALUES] * bool(content.outputs), *content.groups])
+
+
+def _require_room(content: Content, path: Path) -> None:
+    """Refuse a file that is larger than what is free."""
+    points = prod(len(value) for value in content.inputs.values() if isinstance(value, tuple))
+    if path.suffix == ".xlsx":
+        require_room("results.data", points)
+    size = LEAST.get(path.suffix, 0) * points * len(content.outputs)
+    free = shutil.disk_usage(next(one for one in path.absolute().parents if one.exists())).free
+    if size > free:
+        raise OSError(28, f"it takes {size_text(size)} or more, {size_text(free)} are free", str(path))
+
+
+def check_place(path: Path, overwrite: bool = False) -> None:
+    """Refuse to replace what is no earlier result: another file, a folder that is no Zarr store, a pipe."""
+    if path.suffix != ".zarr" or not os.path.lexists(path):
+        check_target(path)
+    elif kind_of(path) != "a folder" or path.is_symlink():
+        raise ValueError(f"{printable(path)}: this is no Zarr store, and would be replaced")
+    elif any(path.iterdir()) and not any((path / name).exists() for name in STORE):
+        raise ValueError(f"{printable(path)}: this folder holds no Zarr store, and would be replaced")
+    require_ours(path, overwrite)
+
+
+# ---- after it ------------------------------------------------------------------------------------
 
 
 def write(
-    path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]", overwrite: bool = False
+    path: Path, values: "xr.Dataset | None", groups: "Parts | None" = None, overwrite: bool = False
 ) -> list[Path]:
     """Write the values and, as groups, the peaks; return the files that were written."""
     check_place(path, overwrite)
+    parts = {**({} if values is None else {VALUES: values}), **(groups or {})}
     with staging(path.parent) as folder:
         try:
-            _WRITERS[path.suffix](folder / path.name, values, groups)
+            _WRITERS[path.suffix](folder / path.name, parts)
         except (OSError, RuntimeError) as error:  # HDF5 has both for a full disk
             raise OSError(f"{printable(path)}: not written: {error}") from error
         staged = sorted(folder.iterdir())
@@ -56,52 +137,38 @@ def write(
     return [path.parent / file.name for file in staged]
 
 
-def files_of(path: Path, values: bool, groups: Iterable[str]) -> list[Path]:
+def files_of(path: Path, parts: Iterable[str]) -> list[Path]:
     """The files that `write` makes: the one of that name, but a table of each part as CSV."""
     if path.suffix != ".csv":
         return [path]
-    return [*([path] if values else []), *(path.with_name(f"{path.stem}_{name}.csv") for name in groups)]
+    return [path if name == VALUES else path.with_name(f"{path.stem}_{name}.csv") for name in parts]
 
 
-def check_place(path: Path, overwrite: bool = False) -> None:
-    """Refuse to replace what is no earlier result: another file, a folder that is no Zarr store, a pipe."""
-    if path.suffix != ".zarr" or not os.path.lexists(path):
-        check_target(path)
-    elif kind_of(path) != "a folder" or path.is_symlink():
-        raise ValueError(f"{printable(path)}: this is no Zarr store, and would be replaced")
-    elif any(path.iterdir()) and not any((path / name).exists() for name in _STORE):
-        raise ValueError(f"{printable(path)}: this folder holds no Zarr store, and would be replaced")
-    require_ours(path, overwrite)
+def _marked(parts: "Parts") -> "dict[str | None, xr.Dataset]":
+    """The parts by the names of their groups, each with its source, which is the mark of the file.
 
-
-def _apart(group: str, peaks: "xr.Dataset") -> "xr.Dataset":
-    """Peaks under dimensions of their own: a group may not share one of another length with its parent."""
-    kind = group.partition("_")[0]  # peak, or steady
-    return peaks.rename({name: f"{kind}_{name}" for name in peaks.dims})
-
-
-def _parts(
-    values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]"
-) -> "Iterator[tuple[str | None, xr.Dataset]]":
-    """The parts by the names of their groups, each with its source, which is the mark of the file."""
-    parts: dict[str | None, xr.Dataset] = {} if values is None else {None: values}
-    parts |= {name: _apart(name, peaks) for name, peaks in groups.items()}
+    Peaks have dimensions of their own: a group may not share one of another length with its parent.
+    """
+    marked: dict[str | None, xr.Dataset] = {}
     for name, part in parts.items():
-        yield name, part.assign_attrs({"source": source(), **part.attrs})
+        prefix = "" if name == VALUES else f"{name.partition('_')[0]}_"  # peak, or steady
+        apart = part.rename({dim: f"{prefix}{dim}" for dim in part.dims}) if prefix else part
+        marked[name if prefix else None] = apart.assign_attrs({"source": source(), **part.attrs})
+    return marked
 
 
-def _netcdf(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
-    size = sum(part.nbytes + _NETCDF_EXTRA for _, part in _parts(values, groups))
+def _netcdf(path: Path, parts: "Parts") -> None:
+    size = sum(part.nbytes + NETCDF_EXTRA for part in parts.values())
     require_space(path.parent, size)  # HDF5 ends the process on a full disk
-    for group, part in _parts(values, groups):
+    for group, part in _marked(parts).items():
         part.to_netcdf(path, mode="a" if path.exists() else "w", group=group, engine="h5netcdf")
 
 
-def _zarr(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
+def _zarr(path: Path, parts: "Parts") -> None:
     with IMPORTS:
         from ...sweeps.store import put, zarr_files
 
-    put(path, zarr_files(dict(_parts(values, groups))))
+    put(path, zarr_files(_marked(parts)))
 
 
 def store_group(path: Path, name: str, part: "xr.Dataset") -> list[Path]:
@@ -109,43 +176,34 @@ def store_group(path: Path, name: str, part: "xr.Dataset") -> list[Path]:
     with IMPORTS:
         from ...sweeps.store import put_group
 
-    put_group(path, name, dict(_parts(None, {name: part}))[name])
+    put_group(path, name, _marked({name: part})[name])
     return []
 
 
-def _csv(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
+def _csv(path: Path, parts: "Parts") -> None:
     """A table for each part: where it is from, a column for each dimension and name, units in the heading."""
-    parts = [*([] if values is None else [values]), *groups.values()]
-    for place, part in zip(files_of(path, values is not None, groups), parts, strict=True):
+    for place, part in zip(files_of(path, parts), parts.values(), strict=True):
         with open(place, "w", encoding="utf-8", newline="") as file:
             file.write(f"# {source()}\r\n")
             csv.writer(file).writerows(table_of(part))
 
 
-def _xlsx(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
+def _xlsx(path: Path, parts: "Parts") -> None:
     """A sheet for each part, and one on what they are about."""
-    write_workbook(path, sheets_of(values, groups))
+    write_workbook(path, sheets_of(parts))
 
 
-def _npz(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
+def _npz(path: Path, parts: "Parts") -> None:
     """Arrays by name, coordinates too; those of a peak with its group before them."""
-    arrays: dict[str, Any] = {} if values is None else {str(n): a.values for n, a in values.variables.items()}
-    for group, peaks in groups.items():
-        arrays |= {f"{group}/{name}": array.values for name, array in peaks.variables.items()}
+    arrays: dict[str, Any] = {
+        str(name) if group == VALUES else f"{group}/{name}": array.values
+        for group, part in parts.items()
+        for name, array in part.variables.items()
+    }
     np.savez(path, **arrays)
     sign_archive(path)
 
 
-_STORE = (
-    "zarr.json",
-    ".zgroup",
-    ".zattrs",
-    ".zmetadata",
-)  # at the top of a Zarr store
 _WRITERS: "dict[str, Writer]" = {
-    ".nc": _netcdf,
-    ".zarr": _zarr,
-    ".csv": _csv,
-    ".xlsx": _xlsx,
-    ".npz": _npz,
-}
+    ".nc": _netcdf, ".zarr": _zarr, ".csv": _csv, ".xlsx": _xlsx, ".npz": _npz,
+}  # fmt: skip

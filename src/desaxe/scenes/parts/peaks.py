@@ -1,0 +1,296 @@
+"""[[peak]]: refined extrema over the crank angle for many designs, and claims about them."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import pi, prod
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...evaluation.evaluate import evaluate
+from ...loads.angles import cycle
+from ...loads.load import Load
+from ...mechanism.catalogue import has, of_design, quantity
+from ...mechanism.names import CENTRES, LENGTHS, STATUS, parts, sensitivity
+from ...mechanism.quantity_units import UnitSystem
+from ...peaks.peak import peak
+from ...support.progress import Steps
+from ...sweeps.peak_step import WORDS, attributes_beside, slope_attributes
+from ..reading.needs import OPTIONAL, needs_of, require, require_known, with_others
+from ..reading.values import Value, design_of, number_of, only_inputs, values_of
+from ..schema import SceneError, shown
+from ..setting import PlanRow, Setting, columns_of
+from .checks import Printed, read_percentage
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+DESIGNS = 1_000  # designs of a peak between two reports of progress
+SIDEWAYS = ("ec", "F_X", "g_X")  # change sign where the mechanism is mirrored at the Y axis
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A claim about the peak of one design: its increase over the baseline."""
+
+    source: str
+    at: dict[str, float]
+    design: dict[str, float]
+    increase: Printed
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A peak over the crank angle, for the outer product of `axes` with everything else fixed."""
+
+    title: str
+    quantity: str
+    kind: str
+    axes: dict[str, tuple[float, ...]]
+    fixed: dict[str, float]
+    theta: tuple[float, float]
+    at_baseline: dict[str, float]
+    baseline: dict[str, float]
+    claims: tuple[Claim, ...]
+    sensitivities: tuple[str, ...]
+    loads: Mapping[str, Load] = field(default_factory=dict)  # that vary with the motion
+
+    @property
+    def designs(self) -> int:
+        """The number of designs, without those of baseline and claims."""
+        return prod(len(values) for values in self.axes.values())
+
+    @property
+    def batches(self) -> int:
+        """The number of batches in which they are searched."""
+        return -(-(self.designs + len(self.claims) + bool(self.baseline)) // DESIGNS)
+
+    @property
+    def work(self) -> PlanRow:
+        """A search for each design."""
+        how = "refined over theta by its derivative"
+        return PlanRow(f"{self.kind} of {self.quantity}", self.designs, "designs", how)
+
+    @property
+    def state(self) -> bool:
+        """True for peaks in a given state of motion."""
+        return "omega" in self.axes or "omega" in self.fixed
+
+
+class ClaimResult(NamedTuple):
+    """A claimed increase of a peak over its baseline and the computed one, in percent."""
+
+    claim: Claim
+    computed: float
+    agrees: bool
+
+
+class PeakResult(NamedTuple):
+    """The peaks of all designs, labelled, and the checked claims about them.
+
+    `dataset` has over the designs' dimensions: `value`, `theta`, `side`, `status`, `value_wrt_<parameter>`
+    and, where there is a baseline, `increase` over it in percent. `mirrored` tells the designs with
+    ec = 0 that reach the peak at -theta as well, where the derivatives by what points to the side
+    (ec, F_X, g_X) have the other sign.
+    """
+
+    peak: Peak
+    dataset: "xr.Dataset"
+    claims: tuple[ClaimResult, ...]
+    mirrored: NDArray[np.bool_]
+
+
+# ---- from the table to the request ---------------------------------------------------------------
+
+
+def peak_of(key: str, table: Mapping[str, Any], inputs: Mapping[str, Value], units: UnitSystem) -> Peak:
+    """The peak of a [[peak]], with its designs, baseline and claims."""
+    name, written = table["quantity"], table.get("over", {})
+    only_inputs(f"{key}.over", written)
+    over = {n: values_of(f"{key}.over.{n}", n, value, units) for n, value in written.items()}
+    if "theta" in over:
+        raise SceneError(f"{key}.over.theta: a peak is taken over theta; its range is {key}.theta")
+    there = _completed(key, table, with_others(inputs, over))
+    state, place = "omega" in there, f"{key}.quantity"
+    require_known(place, name, state)
+    if name == STATUS or of_design(name):
+        raise SceneError(f"{place} = {shown(name)}: it has no peak over theta")
+    slope = sensitivity(name, "theta")  # whose inputs a peak needs
+    wanted = (name, slope) if has(slope, state) else (name,)
+    needed = require(place, [n for n in needs_of(wanted, there) if n != "theta"], name, there)
+    if "omega" in parts(name)[1] and "omega" not in needed:  # V_C_wrt_omega: it has no effect
+        needed.append("omega")
+    for n in over:
+        if n not in needed:
+            raise SceneError(f"{key}.over.{n}: {name} does not depend on it")
+    # Whether the mechanism can be assembled at all depends on its lengths.
+    lengths = require(place, [n for n in LENGTHS if n not in needed], name, there)
+    ordered = {n: there[n] for n in dict.fromkeys((*over, *needed, *lengths))}
+    axes = {n: value for n, value in ordered.items() if isinstance(value, tuple)}
+    loads = {n: value for n, value in ordered.items() if isinstance(value, Load)}
+    fixed: Any = {n: value for n, value in ordered.items() if n not in axes and n not in loads}
+
+    def other(place: str, table: Mapping[str, Any]) -> tuple[dict[str, float], dict[str, float]]:
+        """What is written of another design, and all of its inputs."""
+        at = design_of(place, table, units)
+        return at, _other_design(place, at, axes, fixed)
+
+    none: dict[str, float] = {}
+    at_base, base = other(f"{key}.baseline", table["baseline"]) if "baseline" in table else (none, none)
+    claims = []
+    for number, one in enumerate(table.get("claim", ()), 1):
+        place = f"{key}.claim #{number}"
+        if not base:
+            written = f"{place}.increase = {shown(one['increase'])}"
+            raise SceneError(f"{written}: an increase needs the peak's baseline = {{...}}")
+        increase = read_percentage(f"{place}.increase", one["increase"])
+        claims.append(Claim(one.get("source", "printed"), *other(f"{place}.at", one["at"]), increase))
+    return Peak(
+        table.get("title", ""), name, table.get("kind", "absmax"), axes, fixed,
+        _angles(key, table, inputs, units), at_base, base, tuple(claims),
+        _sensitivities(f"{key}.sensitivities", table, needed), loads,
+    )  # fmt: skip
+
+
+def _completed(key: str, table: Mapping[str, Any], inputs: Mapping[str, Value]) -> dict[str, Value]:
+    """The inputs, with 0 for those that only the baseline, a claim or a sensitivity names."""
+    completed = dict(inputs)
+    named: dict[str, Iterable[str]] = {f"{key}.{n}": table.get(n, ()) for n in ("sensitivities", "baseline")}
+    named |= {f"{key}.claim #{k}.at": claim["at"] for k, claim in enumerate(table.get("claim", ()), 1)}
+    for place, names in named.items():
+        for name in names:
+            if name in CENTRES and name not in completed:
+                raise SceneError(f"{place}: {name} is half a length unless it is given: give masses.{name}")
+            if name in OPTIONAL:
+                completed.setdefault(name, 0.0)
+    return completed
+
+
+def _sensitivities(key: str, table: Mapping[str, Any], needed: Iterable[str]) -> tuple[str, ...]:
+    """The parameters of the requested sensitivities; those of the lengths without."""
+    if "sensitivities" not in table:
+        return tuple(name for name in LENGTHS if name in needed)
+    only_inputs(key, table["sensitivities"])
+    for name in table["sensitivities"]:
+        if name not in needed:
+            reason = "a peak is taken over it" if name == "theta" else "it does not depend on it"
+            raise SceneError(f"{key}: {table['quantity']} has no sensitivity by {name}, {reason}")
+    return tuple(table["sensitivities"])
+
+
+def _angles(
+    key: str, table: Mapping[str, Any], inputs: Mapping[str, Value], units: UnitSystem
+) -> tuple[float, float]:
+    """The range of theta: that of the peak, else that of the motion, else a cycle of the loads."""
+    if "theta" in table:
+        ends = enumerate(table["theta"], 1)
+        low, high = (number_of(f"{key}.theta #{k}", "theta", part, units) for k, part in ends)
+        if low > high:
+            raise SceneError(f"{key}.theta = {shown(table['theta'])}: its lower end comes first")
+        return low, high
+    theta = inputs.get("theta")
+    if isinstance(theta, tuple) and len(theta) > 1:
+        return min(theta), max(theta)
+    return 0.0, cycle({n: value for n, value in inputs.items() if isinstance(value, Load)})
+
+
+def _other_design(
+    key: str, at: Mapping[str, float], axes: Mapping[str, Any], fixed: Mapping[str, float]
+) -> dict[str, float]:
+    """All inputs of a design of which only the differences are written."""
+    for name in at:
+        if name not in axes and name not in fixed:
+            raise SceneError(f"{key}.{name}: the peak does not depend on it")
+    for name in axes:
+        if name not in at:
+            raise SceneError(f"{key}: {name} has {len(axes[name])} values, expected one: give {key}.{name}")
+    return {name: {**fixed, **at}[name] for name in (*axes, *fixed)}
+
+
+# ---- from the request to the result --------------------------------------------------------------
+
+
+def peaks_of(one: Peak, setting: Setting, steps: Steps) -> PeakResult:
+    """The peaks of designs, baseline and claims, found together."""
+    others = [*([one.baseline] if one.baseline else []), *(claim.design for claim in one.claims)]
+    columns = {
+        name: np.append(column, [design[name] for design in others])
+        for name, column in columns_of({**one.axes, **one.fixed}).items()
+    }
+    values = _searched(one, setting, columns, steps)
+    shape, count = [len(axis) for axis in one.axes.values()], one.designs
+    arrays = {name: array[:count].reshape(shape) for name, array in values.items()}
+    claims: tuple[ClaimResult, ...] = ()
+    if one.baseline:
+        base, *claimed = values["value"][count:].tolist()
+        arrays["increase"] = np.asarray(_increase(arrays["value"], base))
+        computed = [float(_increase(value, base)) for value in claimed]
+        pairs = zip(one.claims, computed, strict=True)
+        claims = tuple(ClaimResult(claim, value, claim.increase.agrees(value)) for claim, value in pairs)
+    mirrored = _mirrored(one, setting, columns, values)[:count].reshape(shape)
+    known = quantity(one.quantity, one.state)
+    words = f"{WORDS[one.kind]} of {one.quantity}, {known.meaning}"
+    attributes = {
+        "value": {"units": known.unit, "quantity": one.quantity, "long_name": words},
+        **attributes_beside(),
+        "increase": {"units": "percent", "long_name": "increase over the baseline"},
+    }
+    rows = {
+        n: (a, attributes.get(n) or slope_attributes(one.quantity, n.removeprefix("value_wrt_")))
+        for n, a in arrays.items()
+    }
+    kind = {"quantity": one.quantity, "kind": one.kind}
+    dataset = setting.labelled(rows, one.axes, {**one.fixed, **one.loads}, kind)
+    return PeakResult(one, dataset, claims, mirrored)
+
+
+def _searched(
+    one: Peak, setting: Setting, columns: Mapping[str, NDArray[np.float64]], steps: Steps
+) -> dict[str, NDArray[Any]]:
+    """Value, angle, status and gradient of flat designs, batch by batch."""
+    size = next(iter(columns.values())).size
+    options: dict[str, Any] = {"branch": setting.branch, "accuracy": setting.accuracy, **one.loads}
+    batches = []
+    for start in range(0, size, DESIGNS):
+        steps.next(f"peaks of {one.quantity}")
+        batch: dict[str, Any] = {name: column[start : start + DESIGNS] for name, column in columns.items()}
+        result = peak(one.quantity, kind=one.kind, theta=one.theta, **batch, **options)
+        gradient = result.pop("gradient")
+        for name in one.sensitivities:  # by what has no effect, such as F_X without friction
+            gradient.setdefault(name, np.where(np.isfinite(result["value"]), 0.0, np.nan))
+        batches.append({**result, **{f"value_wrt_{name}": slope for name, slope in gradient.items()}})
+    return {name: np.concatenate([batch[name] for batch in batches]) for name in batches[0]}
+
+
+def _mirrored(
+    one: Peak, setting: Setting, columns: Mapping[str, NDArray[np.float64]], values: Mapping[str, Any]
+) -> NDArray[np.bool_]:
+    """Designs with ec = 0 whose peak is shared by theta and -theta: a kink in its course over ec."""
+    theta = values["theta"]
+    low, high = one.theta
+    if "ec" not in columns or high - low < 2.0 * pi - 1e-9:
+        return np.zeros(theta.shape, np.bool_)
+    steady = columns["alpha"] == 0.0 if "alpha" in columns else True
+    usable = (columns["ec"] == 0.0) & (values["status"] == 0) & (np.abs(np.sin(theta)) > 1e-6) & steady
+    design: dict[str, Any] = {**columns, **one.loads, "branch": setting.branch, "accuracy": setting.accuracy}
+    there: Any = evaluate(one.quantity, theta=-theta, **design)
+    there = np.abs(there) if one.kind == "absmax" else there
+    shared: NDArray[np.bool_] = usable & (np.abs(there - values["value"]) <= 1e-9 * np.abs(values["value"]))
+    return shared
+
+
+def _increase(value: Any, base: float) -> Any:
+    """In percent; relative to the magnitude of the baseline, so that more is always positive."""
+    with np.errstate(all="ignore"):
+        return 100.0 * (np.asarray(value) - base) / np.abs(np.float64(base))
+
+
+def group_names(peaks: Sequence[Peak]) -> list[str]:
+    """A name for each peak, such as `peak_absmax_a_C`; further ones of the same kind get a number."""
+    names: list[str] = []
+    for one in peaks:
+        name = f"peak_{one.kind}_{one.quantity}"
+        again = sum(other == name or other.startswith(f"{name}__") for other in names)
+        names.append(f"{name}__{again + 1}" if again else name)
+    return names
