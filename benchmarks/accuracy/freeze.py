@@ -4,7 +4,7 @@ from itertools import islice
 from pathlib import Path
 
 import desaxe.cli
-from desaxe.cli.accuracy import INPUTS
+from desaxe.cli.doctor import INPUTS
 from desaxe.oracle.families import FAMILIES, points
 from desaxe.oracle.truth import conditions, truth_all
 

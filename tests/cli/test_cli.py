@@ -12,7 +12,7 @@ import pytest
 
 import desaxe as dx
 from benchmarks.accuracy import freeze
-from desaxe.cli import accuracy, command, doctor, main
+from desaxe.cli import command, doctor, main
 from desaxe.mechanism.inputs import INPUTS
 
 COMPACTOR = str(Path(__file__).parents[2] / "examples" / "compactor.toml")
@@ -392,9 +392,9 @@ def test_doctor_compares_with_the_truth(monkeypatch):
     found = doctor.examine(accuracy=True)
     assert found.usable
     assert len(re.findall(r"200 frozen truths: 0\.\d+ of the promised error at most", found.text)) == 2
-    wrong = [*accuracy.truths()]
+    wrong = [*doctor.truths()]
     wrong[7] = wrong[7]._replace(value=wrong[7].value * (1 + 2.0**-40))
-    monkeypatch.setattr(accuracy, "truths", lambda: wrong)
+    monkeypatch.setattr(doctor, "truths", lambda: wrong)
     assert not doctor.examine(accuracy=True).usable
 
 

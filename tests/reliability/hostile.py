@@ -317,7 +317,7 @@ def scene_keys() -> list[tuple[str, ...]]:
                 yield (*path, name)
                 yield from keys(part, (*path, name))
             for inside in ("items", "additionalProperties"):
-                yield from keys(one.get(inside) or {}, path)
+                yield from keys(one[inside], path) if one.get(inside) else ()
 
     return list(keys(schema.SCENE, ()))
 

@@ -36,5 +36,6 @@ def test_every_public_call_has_a_row():
 def test_every_language_and_every_key_of_a_scene_is_tried():
     assert {f"compile to {language.name}" for language in languages()} <= set(calls())
     schema = json.loads((ROOT / "docs" / "scene.schema.json").read_text(encoding="utf-8"))
-    names = {key for table in schema["$defs"].values() for key in table.get("properties", ())}
+    names: set[str] = set()
+    json.loads(json.dumps(schema), object_hook=lambda rule: names.update(rule.get("properties", ())) or rule)
     assert names - {key for path in scene_keys() for key in path} - RANGES == set()

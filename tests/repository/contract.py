@@ -12,7 +12,10 @@ from pathlib import Path
 from typing import Any
 
 import desaxe as dx
-from desaxe.cli.command import _parser
+from desaxe.cli.calls import call_commands
+from desaxe.cli.doctor import DOCTOR
+from desaxe.cli.files import FILES
+from desaxe.cli.parser import parser_of
 
 FILE = Path(__file__).with_name("contract.txt")
 ROD = {"ec": 0.01, "AB": 0.125, "BC": 0.35}
@@ -55,7 +58,7 @@ def lines() -> Iterator[str]:
         if isinstance(codes, enum.EnumMeta) and codes.__module__ == dx.status.__name__ and len(codes):
             yield f"{name}: {', '.join(f'{int(code)} {code.name}' for code in codes)}"
     yield f"quantities: {', '.join(name for name in dx.quantities() if '_wrt_' not in name)}"
-    yield from _commands(_parser())
+    yield from _commands(parser_of((*call_commands(), *FILES, DOCTOR)))
 
 
 def _signatures(name: str, value: Any) -> Iterator[str]:

@@ -11,7 +11,6 @@ from typing import Any
 from ..support.shown import printable
 from .words import UsageError
 
-TEXTS = (".json", ".csv")
 DATASETS = (".csv", ".nc", ".npz", ".xlsx", ".zarr")
 PICTURES = (".png", ".svg", ".pdf")
 
@@ -21,46 +20,51 @@ def require_target(path: Path, overwrite: bool) -> None:
     from ..scenes.stores.files import check_place
     from ..support.files import require_writable
 
-    if path.suffix not in (*TEXTS, *DATASETS, *PICTURES):
-        allowed = ", ".join(dict.fromkeys((*TEXTS, *DATASETS, *PICTURES)))
-        raise UsageError(f"-o {printable(path)}: its name must end in {allowed}")
+    suffixes = (".json", *DATASETS, *PICTURES)
+    if path.suffix not in suffixes:
+        raise UsageError(f"-o {printable(path)}: its name must end in {', '.join(suffixes)}")
     check_place(path, overwrite)
     require_writable(path)
 
 
-def written(answer: Any, options: argparse.Namespace) -> None:
-    """Print an answer as the options say, or write it to the file that they name."""
+def written(answer: Any, options: argparse.Namespace, columns: Mapping[str, Any]) -> None:
+    """Print an answer as the options say, or write it to the file that they name.
+
+    columns  the inputs of several designs with their units, which stand beside the answer in a table
+    """
     if options.json:
         print(json_text(answer))
     elif options.csv:
-        print(csv_text(answer), end="")
+        print(csv_text(answer, columns), end="")
     elif options.file is None:
         from ..support.answer import Answer
 
         plain_dict = type(answer) is dict
         print(answer.report() if hasattr(answer, "report") else Answer(answer) if plain_dict else answer)
     if options.file is not None:
-        path = Path(options.file)
-        _write(answer, path, options.overwrite)
-        print(f"{printable(path)}: written")
+        _write(answer, Path(options.file), options.overwrite, columns)
+        print(f"{printable(options.file)}: written")
 
 
-def _write(answer: Any, path: Path, overwrite: bool) -> None:
+def _write(answer: Any, path: Path, overwrite: bool, columns: Mapping[str, Any]) -> None:
+    from ..evaluation.labels import source
+    from ..scenes.stores.files import write
+    from ..scenes.stores.tables import to_excel
+    from ..support.written import write_whole
+
+    is_dataset = hasattr(answer, "data_vars")
     if path.suffix in PICTURES:
         _picture(answer, path).save(path, overwrite=overwrite)
-    elif hasattr(answer, "data_vars") and path.suffix in DATASETS:
-        from ..scenes.stores.files import write
-
+    elif is_dataset and path.suffix in DATASETS:
         write(path, answer, {}, overwrite)
     elif path.suffix == ".xlsx":
-        from ..scenes.stores.tables import to_excel
-
         to_excel(answer, path, overwrite=overwrite)
-    elif path.suffix in TEXTS:
-        from ..support.written import write_whole
-
-        with write_whole(path, overwrite) as staged:
-            staged.write_text(_file_text(answer, path.suffix), encoding="utf-8", newline="\n")
+    elif path.suffix in (".json", ".csv"):
+        with write_whole(path, overwrite) as staged:  # with its source, which is its mark
+            text = f"# {source()}\n{csv_text(answer, columns)}"
+            if path.suffix == ".json":
+                text = json.dumps({"source": source(), **json.loads(json_text(answer))}, indent=2) + "\n"
+            staged.write_text(text, encoding="utf-8", newline="\n")
     else:
         raise UsageError(f"-o {printable(path)}: this answer is no Dataset; name a .json or .csv file")
 
@@ -87,15 +91,6 @@ def _picture(answer: Any, path: Path) -> Any:
     )
 
 
-def _file_text(answer: Any, suffix: str) -> str:
-    """The text of a file, with its source, which is its mark."""
-    from ..evaluation.labels import source
-
-    if suffix == ".csv":
-        return f"# {source()}\n{csv_text(answer)}"
-    return json.dumps({"source": source(), **json.loads(json_text(answer))}, indent=2) + "\n"
-
-
 def json_text(answer: Any) -> str:
     """The numbers as JSON with their units; null for NaN and infinity."""
     if hasattr(answer, "data_vars"):
@@ -119,19 +114,20 @@ def plain(value: Any) -> Any:
         value = value.tolist()
     if isinstance(value, (list, tuple)):
         return [plain(part) for part in value]
-    if isinstance(value, (bool, int, str)) or value is None:
-        return value
-    if isinstance(value, float):
-        return value if value - value == 0.0 else None
-    return str(value)
+    if isinstance(value, float) and value - value != 0.0:
+        return None
+    return value if isinstance(value, (bool, int, float, str)) or value is None else str(value)
 
 
-def csv_text(answer: Any) -> str:
-    """A table: a column for each array, or a row for each number."""
+def csv_text(answer: Any, columns: Mapping[str, Any]) -> str:
+    """A table: a column for each array, those of the inputs first, or a row for each number."""
     from ..scenes.stores.tables import table_of, tables_of
 
-    is_dataset = hasattr(answer, "data_vars")
-    rows = table_of(answer) if is_dataset else next(iter(tables_of(answer, answer.units).values()))
+    rows: Any = table_of(answer) if hasattr(answer, "data_vars") else ()
+    if not rows:
+        arrays = {name: array for name, (array, _) in columns.items()}
+        units = {name: unit for name, (_, unit) in columns.items()}
+        rows = next(iter(tables_of({**arrays, **answer}, {**units, **answer.units}).values()))
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(rows)
     return text.getvalue()

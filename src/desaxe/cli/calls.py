@@ -5,18 +5,18 @@ A call of this table is a method of `Machine` of the same name. To add one, add 
 
 import argparse
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import partial
 from importlib import import_module
+from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any
 
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LOADS
 from ..support.shown import with_unit
-from ..support.template import file_text, filled
 from .answers import require_target, written
-from .parser import SIGNS, add_command
+from .parser import FLAG, JSON, OVERWRITE, SIGNS, Command, Facts, Option
 from .words import UsageError, arguments_of, name_of
 
 # Call -> what it answers, in a line of `desaxe --help`, and the words of an example.
@@ -70,59 +70,58 @@ PLUS_MINUS = "dx.plus_minus(value, tolerance)"
 SCENE = ", the torque also by [steady] of a scene"
 
 
-def add_calls(commands: Any) -> None:
-    """Add a command for each call of the table."""
-    for name, (meaning, example) in CALLS.items():
-        parser = add_command(commands, name, meaning, _call, text=partial(_help, name, example))
-        parser.set_defaults(call=SAME.get(name, name))
-        parser.add_argument("words", nargs="*", metavar="QUANTITY | NAME=VALUE", help="quantities and inputs")
-        parser.add_argument("--machine", metavar="SCENE", help="path of a TOML file with all other inputs")
-        parser.add_argument("--units", help='units of plain numbers and of the answer: "mm, deg, rpm"')
-        parser.add_argument("--json", action="store_true", help="print JSON")
-        parser.add_argument("--csv", action="store_true", help="print a table as CSV")
-        what = ".json, .csv, .nc, .zarr, .xlsx, .npz, or a picture: .png, .svg, .pdf"
-        parser.add_argument("-o", metavar="FILE", dest="file", help=what)
-        parser.add_argument(
-            "--overwrite", action="store_true", help="replace a file that desaxe did not write"
-        )
-        if name in ("evaluate", "point"):
-            parser.add_argument("--list", action="store_true", help="print all quantities, units, meanings")
+OPTIONS = (
+    Option("words", "quantities and inputs", {"nargs": "*", "metavar": "QUANTITY | NAME=VALUE"}),
+    Option("--machine", "path of a TOML file with all other inputs", {"metavar": "SCENE"}),
+    Option("--units", 'units of plain numbers and of the answer: "mm, deg, rpm"'), JSON,
+    Option("--csv", "print a table as CSV", FLAG),
+    Option("-o", ".json, .csv, .nc, .zarr, .xlsx, .npz, or a picture: .png, .svg, .pdf",
+           {"metavar": "FILE", "dest": "file"}), OVERWRITE,
+)  # fmt: skip
+LIST = Option("--list", "print all quantities, units, meanings", FLAG)
 
 
-def _help(name: str, example: str) -> str:
-    """The longer help of a call, with the names of its options."""
-    from inspect import Parameter, signature
+def call_commands() -> Iterator[Command]:
+    """A command for each call of the table."""
+    for name, (about, example) in CALLS.items():
+        options = [*OPTIONS, LIST] if name in ("evaluate", "point") else OPTIONS
+        yield Command(name, about, _call, options, partial(_facts, name, example), "call")
 
-    every = signature(_function(SAME.get(name, name))).parameters.values()
+
+def _facts(name: str, example: str) -> Facts:
+    """The options of a call, which are those of its function, in its longer help."""
+    every = signature(_function(name)).parameters.values()
     options = [
         p.name for p in every if p.kind is Parameter.KEYWORD_ONLY and p.name not in (*INPUTS, "sliders")
     ]
     loads = [f"{load:8} {INPUTS[load].meaning}" for load in LOADS]
-    facts = {"OPTIONS": ", ".join(options) or "none", "LOADS": loads, "SIGNS": SIGNS}
-    return filled(file_text(__package__, "help", "call.txt"), **facts, EXAMPLE=f"desaxe {name} {example}")
+    listed = ", ".join(options) or "none"
+    return {"OPTIONS": listed, "LOADS": loads, "SIGNS": SIGNS, "EXAMPLE": f"desaxe {name} {example}"}
 
 
 def _function(name: str) -> Any:
     """The public function of a call."""
-    return getattr(import_module("desaxe"), name)
+    return getattr(import_module("desaxe"), SAME.get(name, name))
 
 
 def _call(options: argparse.Namespace) -> int:
     if vars(options).get("list"):
         return _list()
+    call = SAME.get(options.command, options.command)
     if options.file is not None:
         require_target(Path(options.file), options.overwrite)
     names, arguments = arguments_of(options.words)
     pair = next((name for name in arguments if ":" in name), None)
-    if pair is not None and options.call in OF_MEASURES:
-        raise UsageError(f"{pair}: a measure is given as {OF_MEASURES[options.call].format(pair)}")
-    quantities = _quantities(options.call, names)
-    machine, arguments = _machine(options, arguments)
+    if pair is not None and call in OF_MEASURES:
+        raise UsageError(f"{pair}: a measure is given as {OF_MEASURES[call].format(pair)}")
+    quantities = _quantities(call, names)
+    machine, arguments = _machine(call, options, arguments)
     try:
-        answer = _answer(options.call, machine, quantities, arguments)
+        answer = _answer(call, machine, quantities, arguments)
     except (TypeError, ValueError) as error:
         raise UsageError(_as_words(str(error))) from error
-    written(answer, options)
+    is_table = options.csv or str(options.file).endswith((".csv", ".xlsx"))
+    written(answer, options, _columns(machine, arguments, answer) if is_table else {})
     return 0
 
 
@@ -141,6 +140,20 @@ def _answer(call: str, machine: Any, quantities: list[Any], arguments: dict[str,
     if "sliders" not in given:
         warn_that_nothing_acts(names, given)
     return answer
+
+
+def _columns(machine: Any, arguments: Mapping[str, Any], answer: Any) -> dict[str, Any]:
+    """The arrays among the inputs, by name, with their units."""
+    from ..mechanism.quantity_units import SI
+    from ..mechanism.read import read_array
+
+    system = getattr(machine, "units", None) or SI
+    arrays = {n: read_array(INPUTS[n], value, system) for n, value in arguments.items()
+              if n in INPUTS and isinstance(value, list)}  # fmt: skip
+    if hasattr(machine, "in_units"):
+        arrays |= {n: value for n, value in machine.items() if hasattr(value, "tolist") and n not in arrays}
+    units = {n: system.of(n) for n in arrays if n not in answer}
+    return {n: (unit.shown(arrays[n]), unit.unit) for n, unit in units.items()}
 
 
 def _list() -> int:
@@ -162,20 +175,20 @@ def _as_words(message: str) -> str:
     missing = MISSING.match(message)
     if missing:
         names = missing[2].replace("'", "")
-        written = "over.AB=LOW:HIGH" if names == "over" else "NAME=VALUE"
+        word = "over.AB=LOW:HIGH" if names == "over" else "NAME=VALUE"
         scene = SCENE if "torque" in names else ""
-        return f"desaxe {missing[1]}: missing {names}; each is given as {written}{scene}"
+        return f"desaxe {missing[1]}: missing {names}; each is given as {word}{scene}"
     message = message.replace(PLUS_MINUS, '"NAME=VALUE +- TOLERANCE"')
     head, call, _ = message.partition("; call it for each of them")
     return f"{head}: give one, as NAME=VALUE" if call else message
 
 
-def _machine(options: argparse.Namespace, arguments: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+def _machine(call: str, options: argparse.Namespace, arguments: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
     """The machine with the single inputs among the arguments, of which a call takes those that it needs.
 
     Values at a point in SI units need none, and no NumPy: they come from the function itself.
     """
-    if options.call == "evaluate" and options.machine is None and options.units is None:
+    if call == "evaluate" and options.machine is None and options.units is None:
         return import_module("desaxe"), arguments
     from ..machine.crankshaft import Crankshaft
     from ..machine.machine import Machine
@@ -188,11 +201,11 @@ def _machine(options: argparse.Namespace, arguments: dict[str, Any]) -> tuple[An
     else:
         kind = Crankshaft if "crankshaft" in plain_data(options.machine) else Machine
         machine = kind.read(options.machine, units=options.units)
-        arguments = {**_motor(options, arguments, "sliders" in machine), **arguments}
-    if options.call in OF_RANGES:
+        arguments = {**_motor(call, options.machine, arguments, "sliders" in machine), **arguments}
+    if call in OF_RANGES:
         pairs = [name for name, value in arguments.items() if name in INPUTS and type(value) is tuple]
         arguments |= {name: between(*arguments[name]) for name in pairs}
-    if options.call in NOT_FILLED:
+    if call in NOT_FILLED:
         return machine, arguments
     of_machine = {*INPUTS, "branch"} - {"theta"}
     single = {k: v for k, v in arguments.items() if k in of_machine and not isinstance(v, (list, tuple))}
@@ -201,8 +214,6 @@ def _machine(options: argparse.Namespace, arguments: dict[str, Any]) -> tuple[An
 
 def _quantities(call: str, names: list[str]) -> list[Any]:
     """The positional arguments of a call: its names, its one name, its file, or none."""
-    from inspect import Parameter, signature
-
     first = next(iter(signature(_function(call)).parameters.values()))
     if first.kind is not Parameter.POSITIONAL_OR_KEYWORD:
         if names:
@@ -219,7 +230,7 @@ def _quantities(call: str, names: list[str]) -> list[Any]:
     return [measures if first.name == "names" else measures[0]] if names else []
 
 
-def _motor(options: argparse.Namespace, arguments: Mapping[str, Any], several: bool) -> dict[str, Any]:
+def _motor(call: str, path: str, arguments: Mapping[str, Any], several: bool) -> dict[str, Any]:
     """The [steady] of the scene, for the calls that ask for a torque; a flywheel is of `steady` alone.
 
     A flywheel or a fluctuation among the arguments stands for both of the scene's: each asks for the other.
@@ -228,13 +239,12 @@ def _motor(options: argparse.Namespace, arguments: Mapping[str, Any], several: b
     from ..scenes.parts.motor import ROWS
     from ..scenes.scene import scene
 
-    if options.call not in ("steady", "simulate"):
+    if call not in ("steady", "simulate"):
         return {}
-    content = content_of_shaft(options.machine)[0] if several else scene(options.machine).content
-    steady = content.steady
+    steady = (content_of_shaft(path)[0] if several else scene(path).content).steady
     if steady is None:
         return {}
-    if options.call == "simulate" or any(name in arguments for name in ROWS):
+    if call == "simulate" or any(name in arguments for name in ROWS):
         return {"torque": steady.torque}
     open_axes = [name for name in steady.axes if name not in arguments]
     wheel = next((name for name in open_axes if name in ROWS), None)

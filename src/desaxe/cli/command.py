@@ -4,24 +4,22 @@ Start-up is light: what a command needs is imported when it runs. A complaint is
 with exit code 2.
 """
 
-import argparse
 import errno
 import os
 import signal
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any
 
 from ..support.extras import MissingExtraError, explained
 from ..support.interrupts import is_at_work
 from ..support.shown import printable
-from .calls import CALLS, add_calls
-from .checks import add_derive, add_doctor, derive
-from .parser import SIGNS, Parser, Version
-from .scene import add_compile, add_explain, add_explore, add_run, add_scene
-from .sweep import add_sweep
+from .calls import CALLS, call_commands
+from .doctor import DOCTOR
+from .files import FILES, derive
+from .parser import parser_of
 from .words import UsageError, options_first
 
 LONGEST = 2_000  # characters of an error
@@ -30,19 +28,6 @@ INTERRUPTED, TERMINATED = 130, 143  # as a shell reports them
 
 class Terminated(KeyboardInterrupt):
     """The process received SIGTERM: it stops as after Ctrl-C and leaves no half-written file."""
-
-
-COMMANDS = (
-    add_calls,
-    add_scene,
-    add_run,
-    add_sweep,
-    add_explain,
-    add_compile,
-    add_explore,
-    add_derive,
-    add_doctor,
-)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -56,17 +41,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise OSError(errno.EBADF, "it is closed", "standard output")
         sys.stdout.flush()
         return code
-    except SystemExit as done:  # --help and --version
+    except SystemExit as done:  # --help
         return int(done.code or 0)
     except BrokenPipeError:  # whoever read our output has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except KeyboardInterrupt as stopped:
-        how, code = (
-            ("terminated", TERMINATED) if isinstance(stopped, Terminated) else ("interrupted", INTERRUPTED)
-        )
-        print(": ".join(map(str, (f"desaxe: {how}", *stopped.args))), file=sys.stderr)
-        return _leave(code)
+        ended = isinstance(stopped, Terminated)
+        how = f"desaxe: {'terminated' if ended else 'interrupted'}"
+        print(": ".join(map(str, (how, *stopped.args))), file=sys.stderr)
+        return _leave(TERMINATED if ended else INTERRUPTED)
     except (UsageError, MissingExtraError, ValueError, TypeError, OSError, MemoryError) as error:
         print(f"desaxe: error: {_one_line(error)}", file=sys.stderr)
         return 2
@@ -104,14 +88,19 @@ def _run(words: list[str]) -> int:
         return derive(words[1:])
     if words and words[0] in CALLS:
         words = [words[0], *options_first(words[1:])]
-    parser = _parser()
+    parser = parser_of((*call_commands(), *FILES, DOCTOR))
     options = parser.parse_args(words)
-    run: Callable[[argparse.Namespace], int] | None = getattr(options, "run", None)
-    if run is None:
+    if options.version:
+        from ..support.version import version
+
+        print(f"desaxe {version()}")
+        return 0
+    if not hasattr(options, "run"):
         parser.print_help()
         return 0
     with explained(f"desaxe {words[0]}"), warnings_in_a_line():
-        return run(options)
+        code: int = options.run(options)
+        return code
 
 
 @contextmanager
@@ -119,11 +108,11 @@ def warnings_in_a_line() -> Iterator[None]:
     """Print warnings of desaxe without the place in its source."""
     usual = warnings.formatwarning
 
-    def told(message: Any, category: Any, *place: Any, **more: Any) -> str:
+    def line(message: Any, category: Any, *place: Any, **more: Any) -> str:
         own = category.__module__.startswith("desaxe.")
         return f"desaxe: {printable(message)}\n" if own else usual(message, category, *place, **more)
 
-    warnings.formatwarning = told
+    warnings.formatwarning = line
     try:
         yield
     finally:
@@ -136,17 +125,3 @@ def _one_line(error: Exception) -> str:
         text = f"{error.filename}: {error.strerror}" if error.filename else error.strerror
     text = printable(text)
     return text if len(text) <= LONGEST else f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = Parser(
-        prog="desaxe",
-        description="Offset slider-crank: kinematics with exact sensitivities.",
-        epilog=f"{SIGNS}\n\n`desaxe COMMAND --help` explains a command and gives examples.",
-        formatter_class=lambda prog: argparse.RawDescriptionHelpFormatter(prog, max_help_position=20),
-    )
-    parser.add_argument("--version", action=Version, help="print the version and leave")
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
-    for add in COMMANDS:
-        add(commands)
-    return parser

@@ -1,24 +1,27 @@
-"""`desaxe doctor`: what is installed, where kernels are kept, and whether arrays and points agree here."""
+"""`desaxe doctor`: what is installed, and whether points and arrays agree here, or with 200 frozen truths."""
 
+import argparse
 import platform
 import sys
 import time
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
+from math import isfinite, ulp
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..evaluation.evaluate import evaluate
 from ..support.extras import EXTRAS
-from .accuracy import worst_shares
+from ..support.template import file_text
+from .parser import FLAG, Command, Option
 
 RUNTIME = ("numpy", "numba", "llvmlite")
-OPTIONAL = (
-    "sympy", "mpmath", "xarray", "h5netcdf", "h5py", "zarr", "dask", "distributed", "matplotlib", "pint",
-    "tqdm", "scipy", "plotly", "python-flint",
-)  # fmt: skip
 FEATURES = ("sse2", "sse4.2", "avx", "avx2", "fma", "avx512f", "neon", "sve")  # as LLVM calls them
+MISSING = "missing"
+POINTS, CLOSE = 4096, 1e-13
+PRESS: dict[str, Any] = {"ec": 0.01, "AB": 0.04, "BC": 0.1, "omega0": 31.4}
+INPUTS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
+COPIES = 64  # of a point in an array: enough to compile instead of computing them one by one
 
 
 class Examination(NamedTuple):
@@ -28,31 +31,39 @@ class Examination(NamedTuple):
     usable: bool
 
 
+def _doctor(options: argparse.Namespace) -> int:
+    report = examine(options.accuracy)
+    print(report.text)
+    return 0 if report.usable else 1
+
+
+ABOUT = "versions, threads, and whether arrays and points agree on this computer"
+DOCTOR = Command(
+    "doctor", ABOUT, _doctor, [Option("--accuracy", "compare with 200 frozen truths", FLAG)]
+)  # fmt: skip
+
+
 def examine(accuracy: bool = False) -> Examination:
     """Examine the installation, its values beside frozen truths too; problems are reported, never raised."""
     computed, usable = _computation(accuracy)
-    parts = {
-        "desaxe": [_row("version", _version("desaxe")), _row("place", str(Path(__file__).parents[1]))],
-        "runtime": [_row("python", _python()), *(_row(name, _version(name)) for name in RUNTIME)],
-        "optional": [_row(name, _optional(name)) for name in OPTIONAL],
-        "committed kernels": [_committed()],
-        "arrays": [_row("machine code", _machine_code())],
+    usable = usable and all(_version(name) != MISSING for name in RUNTIME)
+    python = f"{platform.python_implementation()}, {sys.platform}, {platform.machine()}"
+    parts: dict[str, dict[str, str]] = {
+        "desaxe": {"version": _version("desaxe"), "place": str(Path(__file__).parents[1])},
+        "runtime": {"python": f"{platform.python_version()} ({python})"}
+        | {name: _version(name) for name in RUNTIME},
+        "optional": {name: _optional(name, extra) for name, extra in EXTRAS.items() if "." not in name},
+        "committed kernels": {"freshness": _committed()},
         "processor": _processor(),
         "computation": computed,
     }
-    usable = usable and not any(_version(name) == MISSING for name in RUNTIME)
-    lines = [line for title, rows in parts.items() for line in (title, *rows)]
+    lines = [
+        line
+        for title, rows in parts.items()
+        for line in (title, *(f"  {name:13}{what}" for name, what in rows.items()))
+    ]
     verdict = "desaxe can be used." if usable else "desaxe cannot be used here; see above."
     return Examination("\n".join([*lines, verdict]), usable)
-
-
-def _row(name: str, what: str) -> str:
-    return f"  {name:13}{what}"
-
-
-# ---- what is installed ---------------------------------------------------------------------------
-
-MISSING = "missing"
 
 
 def _version(name: str) -> str:
@@ -62,81 +73,55 @@ def _version(name: str) -> str:
         return MISSING
 
 
-def _optional(name: str) -> str:
-    found = _version(name)
-    return f"missing: python -m pip install 'desaxe[{EXTRAS[name]}]'" if found == MISSING else found
-
-
-def _python() -> str:
-    kind = f"{platform.python_implementation()}, {sys.platform}, {platform.machine()}"
-    return f"{platform.python_version()} ({kind})"
-
-
-# ---- machine code and generated files -------------------------------------------------------------
-
-
-def _machine_code() -> str:
-    """Compile, load and call a function: some systems refuse memory that is written and then run."""
-    from ctypes import CFUNCTYPE, c_double
-
-    from ..compiler.llvm.machine import compiled
-
-    try:
-        code = compiled("define double @half() {\n  ret double 0.5\n}", "half")
-    except RuntimeError as error:
-        return str(error)
-    return "runs" if CFUNCTYPE(c_double)(code.address)() == 0.5 else "gives a wrong answer"
+def _optional(name: str, extra: str) -> str:
+    installed = _version(name)
+    return f"missing: python -m pip install 'desaxe[{extra}]'" if installed == MISSING else installed
 
 
 def _committed() -> str:
     """Report if generated/ matches the installed derivation and compiler."""
     digest: str = import_module("desaxe.generated").DIGEST
     if find_spec("sympy") is None:
-        return _row("freshness", f"digest {digest[:16]}; to check it: python -m pip install 'desaxe[derive]'")
+        return f"digest {digest[:16]}; to check it: python -m pip install 'desaxe[derive]'"
     current: str = import_module("desaxe.derive.write").inputs_digest()
     state = "fresh" if current == digest else f"STALE, the sources are {current[:16]}: run `desaxe derive`"
-    return _row("freshness", f"{state} (digest {digest[:16]})")
+    return f"{state} (digest {digest[:16]})"
 
 
-# ---- the machine ---------------------------------------------------------------------------------
-
-
-def _processor() -> list[str]:
+def _processor() -> dict[str, str]:
     """Threads, and the CPU as LLVM sees it."""
     from ..runtime.threads import available
 
-    rows = [_row("threads", f"{available()} can be used by this process")]
+    rows = {"threads": f"{available()} can be used by this process"}
     try:
         llvm = import_module("llvmlite.binding")
-        features = llvm.get_host_cpu_features()
-        found = [name for name in FEATURES if features.get(name)]
-        rows += [_row("name", llvm.get_host_cpu_name()), _row("SIMD", ", ".join(found) or "none known")]
+        features = [name for name in FEATURES if llvm.get_host_cpu_features().get(name)]
+        return rows | {"name": llvm.get_host_cpu_name(), "SIMD": ", ".join(features) or "none known"}
     except (ImportError, RuntimeError, OSError) as error:
-        rows.append(_row("name", f"unknown: {error}"))
-    return rows
+        return rows | {"name": f"unknown: {error}"}
 
 
 # ---- does it compute? ----------------------------------------------------------------------------
 
-POINTS, CLOSE = 4096, 1e-13
-PRESS: dict[str, Any] = {"ec": 0.01, "AB": 0.04, "BC": 0.1, "omega0": 31.4}
 
-
-def _computation(accuracy: bool) -> tuple[list[str], bool]:
+def _computation(accuracy: bool) -> tuple[dict[str, str], bool]:
     """Report lines of arrays, which are compiled, beside single points, which are not; if they are right."""
     started = time.perf_counter()
     try:
         apart = _array_beside_points()
         shares = worst_shares() if accuracy else {}
     except Exception as error:  # whatever stops a compilation is what the user must know
-        return [_row("arrays", f"FAILED: {type(error).__name__}: {error}")], False
+        return {"arrays": f"FAILED: {type(error).__name__}: {error}"}, False
     seconds = time.perf_counter() - started
-    rows = [_row("arrays", f"a_C at {POINTS:,} points in {seconds:.1f} s, {apart:.0e} from single points")]
-    rows += [
-        _row(what, f"200 frozen truths: {share:.2g} of the promised error at most")
-        for what, share in shares.items()
-    ]
+    rows = {"arrays": f"a_C at {POINTS:,} points in {seconds:.1f} s, {apart:.0e} from single points"}
+    for what, share in shares.items():
+        rows[f"{what}, truth"] = f"200 frozen truths: {share:.2g} of the promised error at most"
     return rows, apart < CLOSE and all(share <= 1.0 for share in shares.values())
+
+
+def evaluate(*args: Any, **inputs: Any) -> Any:
+    """`desaxe.evaluate`."""
+    return import_module("desaxe").evaluate(*args, **inputs)
 
 
 def _array_beside_points() -> float:
@@ -149,3 +134,42 @@ def _array_beside_points() -> float:
     some = range(0, POINTS, POINTS // 16)
     apart = (abs(array[k] - evaluate("a_C", theta=float(theta[k]), **PRESS)) for k in some)
     return float(max(apart)) / largest
+
+
+class FrozenTruth(NamedTuple):
+    """The true value of a quantity at a point, rounded, and the error that is promised there [ulp]."""
+
+    name: str
+    branch: int
+    point: dict[str, Any]
+    value: float
+    promised: float
+
+    def share(self, value: float) -> float:
+        """The error of a value as a share of the promise; the truth itself is rounded by half an ulp."""
+        if not isfinite(value):
+            return float("inf")
+        return max(0.0, abs(value - self.value) / ulp(self.value) - 0.5) / self.promised
+
+
+def truths() -> list[FrozenTruth]:
+    """The table, as `python -m benchmarks.accuracy.freeze` wrote it."""
+    rows = []
+    for name, branch, *numbers in map(str.split, file_text(__package__, "truths.txt").splitlines()):
+        *point, value, promised = map(float, numbers)
+        rows.append(FrozenTruth(name, int(branch), dict(zip(INPUTS, point, strict=True)), value, promised))
+    return rows
+
+
+def worst_shares() -> dict[str, float]:
+    """The largest error of single points and of arrays, as shares of the promise."""
+    import numpy as np
+
+    rows, of_arrays = truths(), []
+    of_points = [row.share(evaluate(row.name, branch=row.branch, **row.point)) for row in rows]
+    for key in dict.fromkeys((row.name, row.branch) for row in rows):
+        some = [row for row in rows if (row.name, row.branch) == key] * COPIES
+        columns: dict[str, Any] = {name: np.array([row.point[name] for row in some]) for name in INPUTS}
+        values = evaluate(key[0], branch=key[1], **columns).tolist()
+        of_arrays += [row.share(value) for row, value in zip(some, values, strict=True)]
+    return {"points": max(of_points), "arrays": max(of_arrays)}

@@ -2,8 +2,8 @@
 
 import argparse
 import re
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NoReturn
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple, NoReturn
 
 from ..mechanism.spelling import did_you_mean
 from ..support.template import file_text, filled
@@ -15,6 +15,31 @@ signs: Y points along the slider axis towards the slider, theta turns from +Y to
        forces are positive along +X and +Y, torques like theta."""
 
 SEE = "see docs/choose.md: which call for which question"
+Facts = Mapping[str, str | Sequence[str]]  # place in a help text -> what stands there
+
+
+class Option(NamedTuple):
+    """An option or an argument of a command, with what argparse takes beside its help."""
+
+    name: str
+    help: str
+    more: Mapping[str, Any] = {}
+
+
+class Command(NamedTuple):
+    """A sub-command: its one-line help, what runs it, its options, facts in the longer help."""
+
+    name: str
+    about: str
+    run: Callable[[argparse.Namespace], int]
+    options: Iterable[Option] = ()
+    facts: Callable[[], Facts] = dict
+    text: str = ""  # the file of its longer help, if that is not its name
+
+
+FLAG: Mapping[str, Any] = {"action": "store_true"}
+OVERWRITE = Option("--overwrite", "replace a file that desaxe did not write, or that was changed", FLAG)
+JSON = Option("--json", "print JSON", FLAG)
 
 
 class Parser(argparse.ArgumentParser):
@@ -36,35 +61,24 @@ class Parser(argparse.ArgumentParser):
         raise UsageError(f"{message} (see {self.prog} --help)")
 
 
-class Version(argparse.Action):
-    """The action of `--version`: looks the version up only when it is called."""
-
-    def __init__(self, option_strings: Sequence[str], dest: str, **options: Any) -> None:
-        super().__init__(option_strings, argparse.SUPPRESS, nargs=0, **options)
-
-    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
-        """Print the version and leave."""
-        from ..support.version import version
-
-        print(f"desaxe {version()}")
-        parser.exit()
-
-
-def add_command(
-    commands: Any,
-    name: str,
-    what: str,
-    run: Callable[[argparse.Namespace], int],
-    facts: Callable[[], Mapping[str, str | Sequence[str]]] = dict,
-    text: Callable[[], str] | None = None,
-) -> Any:
-    """Add a sub-command with its one-line help, and `text` or that of `help/NAME.txt` with these facts."""
-    parser = commands.add_parser(
-        name,
-        help=what,
-        description=f"{what[0].upper()}{what[1:]}.",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+def parser_of(commands: Iterable[Command]) -> Parser:
+    """The parser of the command line with these sub-commands."""
+    parser = Parser(
+        prog="desaxe",
+        description="Offset slider-crank: kinematics with exact sensitivities.",
+        epilog=f"{SIGNS}\n\n`desaxe COMMAND --help` explains a command and gives examples.",
+        formatter_class=lambda prog: argparse.RawDescriptionHelpFormatter(prog, max_help_position=20),
     )
-    parser.set_defaults(run=run)
-    parser.more = text or (lambda: filled(file_text(__package__, "help", f"{name}.txt"), **facts()))
+    parser.add_argument("--version", help="print the version and leave", **FLAG)
+    several = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
+    for one in commands:
+        about = f"{one.about[0].upper()}{one.about[1:]}."
+        formatter = argparse.RawDescriptionHelpFormatter
+        sub = several.add_parser(one.name, help=one.about, description=about, formatter_class=formatter)
+        sub.set_defaults(run=one.run, command=one.name)
+        sub.more = lambda one=one: filled(
+            file_text(__package__, "help", f"{one.text or one.name}.txt"), **one.facts()
+        )
+        for option in one.options:
+            sub.add_argument(option.name, help=option.help, **option.more)
     return parser

@@ -1,6 +1,7 @@
 """Command-line arguments as names of quantities and inputs; UsageError for any other."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from itertools import pairwise
 from typing import Any
 
@@ -12,80 +13,48 @@ class UsageError(Exception):
 
 
 VALUED = ("--machine", "--units", "-o")  # options of a call whose value is the next word
-PLAIN = ("--json", "--csv", "--overwrite", "--list", "--help", "-h")
-FLAGS = ("--quality",)  # options of functions that are true
-TABLES = ("over", "sigma", "nuisance", "loss")  # and those that have values
 
 
 def options_first(words: Sequence[str]) -> list[str]:
     """The words of a call with its options, which may stand anywhere, ahead of names and inputs.
 
-    `--over AB=35:50 --loss huber` is `over.AB=35:50 loss=huber`; a scene without `--machine` is the machine.
+    A scene without `--machine` is the machine.
     """
     options: list[str] = []
     others: list[str] = []
-    tables: dict[str, list[str]] = {}
-    values: list[str] = others  # where the next word belongs
     for before, word in pairwise(["", *words]):
-        if word in PLAIN or word in VALUED or before in VALUED:
+        if word.startswith("-") or before in VALUED:
             options.append(word)
-            values = others
-        elif word in FLAGS:
-            others.append(f"{word[2:]}=true")
-            values = others
-        elif word.startswith("--"):
-            if word[2:] in TABLES:
-                values = tables.setdefault(word[2:], [])
-            else:
-                options.append(word)
-        elif word.endswith(".toml") and values is others and "--machine" not in words:
+        elif word.endswith(".toml") and "--machine" not in words:
             options += ["--machine", word]
         else:
-            if values and "=" in word and values is tables.get("loss"):  # an input behind a value
-                values = others
-            values.append(word)
-    for key, parts in tables.items():
-        if not parts:
-            raise UsageError(f"--{key}: expected values, such as --over AB=30mm:60mm")
-        if any("=" in part for part in parts):
-            others += [f"{key}.{part}" if "=" in part else f"{key}.{part}=none" for part in parts]
-        else:
-            others.append(f"{key}={','.join(parts)}")
+            others.append(word)
     return [*options, *others]
 
 
 def arguments_of(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
     """Split arguments into names and arguments of a call; `over.ec=LOW:HIGH` is an entry of `over`."""
-    names, pairs = _parted(words)
-    arguments: dict[str, Any] = {}
-    for key, text in pairs.items():
-        head, dot, entry = key.partition(".")
-        value = _value(f"{key}={text}", text)
-        if not dot and head not in arguments:
-            arguments[head] = value
-        elif dot and isinstance(arguments.setdefault(head, {}), dict):
-            arguments[head][name_of(entry)] = value
-        else:
-            raise UsageError(f"{key}={text}: {head} has a value already")
-    return names, arguments
-
-
-def _parted(words: Sequence[str]) -> tuple[list[str], dict[str, str]]:
-    """Names, each once, and the texts of what has a value."""
     names: list[str] = []
-    pairs: dict[str, str] = {}
+    arguments: dict[str, Any] = {}
+    keys: set[str] = set()
     for before, word in pairwise(["", *words]):
-        key, equals, value = (part.strip() for part in word.partition("="))
+        key, equals, text = (part.strip() for part in word.partition("="))
         if not equals:
             _refuse_parted(before, word)
             names += [name for name in word.split(",") if name]
-        elif not (key and value):
+            continue
+        if not (key and text):
             raise UsageError(f"{word}: an input and its value are one word, such as theta=60deg")
-        elif key in pairs:
+        if key in keys:
             raise UsageError(f"{word}: {key} is given twice")
-        else:
-            pairs[key] = value
-    return list(dict.fromkeys(names)), pairs
+        keys.add(key)
+        head, dot, entry = key.partition(".")
+        table = arguments.setdefault(head, {} if dot else _value(word, text))
+        if dot and isinstance(table, dict):
+            table[name_of(entry)] = _value(word, text)
+        elif dot or isinstance(table, dict):
+            raise UsageError(f"{word}: {head} has a value already")
+    return list(dict.fromkeys(names)), arguments
 
 
 def _value(word: str, text: str) -> Any:
@@ -120,17 +89,10 @@ def _single(text: str) -> Any:
     """True, False, None, a number, or the text as it is: of a quantity, or a word such as `kind=max`."""
     if text in ("true", "false", "none"):
         return {"true": True, "false": False}.get(text)
-    try:
-        return int(text)
-    except ValueError:
-        return _float(text)
-
-
-def _float(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:
-        return text
+    for kind in (int, float):
+        with suppress(ValueError):
+            return kind(text)
+    return text
 
 
 def name_of(entry: str) -> Any:
@@ -159,19 +121,17 @@ def _range(word: str, first: str, last: str, count: str) -> list[Any]:
 
 def _refuse_parted(before: str, word: str) -> None:
     """UsageError if the shell split `ec=10 mm` in two: the second argument is then a unit."""
-    from ..mechanism.catalogue import quantities
+    from ..mechanism.catalogue import has
 
     key, equals, value = before.partition("=")
-    if not equals or word in quantities():
+    if not equals or has(word):
         return
     from ..mechanism.inputs import INPUTS
     from ..mechanism.read import in_si
 
-    try:
+    with suppress(ValueError, KeyError, MissingExtraError):
         float(value)
         in_si(INPUTS[key], f"{value} {word}")
-    except (ValueError, KeyError, MissingExtraError):
-        return
-    raise UsageError(
-        f'{before} {word}: a value and its unit are one word, {before}{word} or "{before} {word}"'
-    )
+        raise UsageError(
+            f'{before} {word}: a value and its unit are one word, {before}{word} or "{before} {word}"'
+        )

@@ -142,7 +142,7 @@ def _loop(
 
 
 def lookups_of(of: Points, angles: int, points: int) -> list[dict[str, Any]]:
-    """How often each load is looked up, and where."""
+    """The number of times that each load is looked up, and where."""
     loads = {} if of.loads is None else of.loads.loads
 
     def where(load: Load) -> tuple[int, str]:

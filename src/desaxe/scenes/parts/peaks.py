@@ -132,7 +132,7 @@ def peak_of(key: str, table: Mapping[str, Any], inputs: Mapping[str, Value], uni
     fixed: Any = {n: value for n, value in ordered.items() if n not in axes and n not in loads}
 
     def other(place: str, table: Mapping[str, Any]) -> tuple[dict[str, float], dict[str, float]]:
-        """What is written of another design, and all of its inputs."""
+        """The differences of another design, and all of its inputs."""
         at = design_of(place, table, units)
         return at, _other_design(place, at, axes, fixed)
 

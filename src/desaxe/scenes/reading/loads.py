@@ -20,7 +20,7 @@ RANGE = ("start", "stop", "num", "step")
 
 
 class LoadKind(NamedTuple):
-    """What makes a load; the keys of its columns and of their units; of its other options; points of it."""
+    """A maker of loads; keys of its columns, of their units, of its other options; an example of points."""
 
     maker: Any
     columns: tuple[str, ...] = ()
