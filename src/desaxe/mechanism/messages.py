@@ -37,17 +37,13 @@ class NamedValue(NamedTuple):
 
         if plain and not self.form:
             return with_unit(shown(value), unit)
-
-        def digits(number: Any) -> str:
-            return f"{conversion.shown(float(number)):{self.form or '.15g'}}"
-
-        if hasattr(value, "ndim") and value.ndim:
+        if getattr(value, "ndim", 0):
             return with_unit(shown(conversion.shown(value)), unit)
         parts = value if isinstance(value, (tuple, list)) else (value,)
         if not all(isinstance(part, (int, float)) or hasattr(part, "is_integer") for part in parts):
             return shown(value)
-        text = digits(value) if parts is not value else f"({', '.join(map(digits, parts))})"
-        return with_unit(text, unit)
+        digits = [f"{conversion.shown(float(part)):{self.form or '.15g'}}" for part in parts]
+        return with_unit(digits[0] if parts is not value else f"({', '.join(digits)})", unit)
 
 
 class Message(str):

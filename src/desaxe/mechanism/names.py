@@ -29,15 +29,9 @@ WHOLE = (
 )  # fmt: skip
 # What the library requests beside the names of a user: no quantity of his own is called so.
 INTERNAL = (
-    FORCE_STATUS,
-    TURN_STATUS,
-    "wide_margins",
-    "undecided",
-    "less_rounded",
-    "less_unsure",
-    "no_effect_on_rod",
+    FORCE_STATUS, TURN_STATUS, "wide_margins", "undecided", "less_rounded", "less_unsure", "no_effect_on_rod",
     "not_stalled",
-)
+)  # fmt: skip
 CENTRES = ("r_crank", "r_rod")  # half of AB and of BC where they are not given
 # The order in which parameters stand in a name; omega, of a given state, stands in omega0's place.
 ORDER = ("theta", "ec", "AB", "BC", "omega0", "omega", "alpha", *LOADS)
