@@ -288,7 +288,7 @@ def test_process(tmp_path):
 
 def test_start_is_light():
     """One point with plain numbers loads neither NumPy nor any optional dependency."""
-    heavy = ("numpy", "numba", "pint", "xarray", "matplotlib", "sympy", "tqdm")
+    heavy = ("numpy", "numba", "pint", "xarray", "matplotlib", "sympy")
     code = f"""
 import sys
 from desaxe.cli import main

@@ -52,7 +52,6 @@ def test_what_is_left_follows_from_what_is_done(monkeypatch):
 
 
 def test_one_bar_at_a_time(monkeypatch):
-    pytest.importorskip("tqdm")
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
     with progress_bar() as outer, progress_bar() as inner:
         assert outer is not None

@@ -3,6 +3,7 @@
 import contextlib
 import io
 import math
+import re
 import sys
 import time
 from contextlib import contextmanager
@@ -221,7 +222,9 @@ def test_progress_bar(monkeypatch):
     with progress_bar(delay=0.0) as progress:
         progress(3, 7, "values")
         time.sleep(0.5)
-    assert "3 of 7 steps" in sys.stderr.getvalue()
+    bar = sys.stderr.getvalue()
+    assert re.search(r"3 of 7 steps \|#+ +\| values\r", bar)
+    assert bar.endswith("\r\x1b[K")
     monkeypatch.setattr(sys, "stderr", Terminal())
     with progress_bar() as progress:
         progress(3, 7, "values")

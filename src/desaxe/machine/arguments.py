@@ -9,9 +9,9 @@ from ..loads.load import Load
 from ..loads.resolve import settled
 from ..loads.units import function_in_si, slopes_in_si
 from ..mechanism import read
-from ..mechanism.inputs import INPUTS, OF_SHAFTS, Input
+from ..mechanism.inputs import INPUTS, OF_SHAFTS, OTHERS, Input
 from ..mechanism.names import WHOLE
-from ..mechanism.quantity_units import OTHERS, UnitSystem, si_unit
+from ..mechanism.quantity_units import UnitSystem, si_unit
 from ..support.forks import IMPORTS
 from ..units.text import PLUS_MINUS, with_unit_of
 

@@ -263,7 +263,7 @@ class Machine(Mapping[str, Any]):
 
         It has the inputs, the mechanism to scale, curves, peaks with angle, side and gradient, the drive,
         what tolerances do, warnings, versions and this call; of an array of designs a few. A file that desaxe
-        did not write is replaced only with `overwrite`. Needs the extras `scene`, `labelled`, `plot`.
+        did not write is replaced only with `overwrite`. Needs the extras `labelled`, `plot`.
         """
         with IMPORTS:
             from .report import write_report

@@ -96,6 +96,26 @@ OF_SHAFTS = {
     "position": Input("position", "m", "from the middle of the shaft to a slider"),
     "I_shaft": Input("I_shaft", "kg*m^2", "moment of inertia of the shaft", 0.0, INPUTS["I_rod"].limit),
 }
+# Units of inputs and results that are no quantities of the catalogue.
+OTHERS = {
+    name: unit
+    for unit, names in {
+        "m/s": "V_outward V_inward",
+        "rad": "theta0 until phase firing angle theta_intervals",
+        "rad/s": "omega_start omega_mean synchronous_speed",
+        "s": "t t_end t_last times period",
+        "N*m": "torque torque_mean torque_rms torque_peak starting_torque flywheel_torque "
+        "T_motor breakdown_torque C_inertia_X C_inertia_Y",
+        "J": "work work_in work_out",
+        "W": "power_mean power_peak",
+        "kg*m^2": "flywheel_inertia",
+        "1": "breakdown_slip gear",
+        "m": "radius spacing free",
+        "kg": "mass",
+        "kg*m": "product",
+    }.items()
+    for name in names.split()
+}  # fmt: skip
 # Magnitudes between which nothing overflows, nor underflows to a wrong value. The least is that of the rod;
 # what is much smaller vanishes beside it.
 SAFE = 1e-60, 1e60

@@ -14,31 +14,11 @@ from typing import Any
 from ..support.computed import computed_once
 from ..units.system import DIMENSIONS, Conversion, conversions_by_unit, read_units, size_in
 from .catalogue import quantity
-from .inputs import INPUTS, OF_SHAFTS
+from .inputs import INPUTS, OF_SHAFTS, OTHERS
 from .names import parts
 from .own import register
 
 PLAIN = Conversion("1")
-# Units of inputs and results that are no quantities of the catalogue.
-OTHERS = {
-    name: unit
-    for unit, names in {
-        "m/s": "V_outward V_inward",
-        "rad": "theta0 until phase firing angle theta_intervals",
-        "rad/s": "omega_start omega_mean synchronous_speed",
-        "s": "t t_end t_last times period",
-        "N*m": "torque torque_mean torque_rms torque_peak starting_torque flywheel_torque "
-        "T_motor breakdown_torque C_inertia_X C_inertia_Y",
-        "J": "work work_in work_out",
-        "W": "power_mean power_peak",
-        "kg*m^2": "flywheel_inertia",
-        "1": "breakdown_slip gear",
-        "m": "radius spacing free",
-        "kg": "mass",
-        "kg*m": "product",
-    }.items()
-    for name in names.split()
-}  # fmt: skip
 # Numbers of a load on the slider: one is the load's unit by those of these quantities; a position is no load.
 OF_LOADS = {"stiffness": ("Y",), "linear": ("V_C",), "quadratic": ("V_C", "V_C"), "free": None}
 _OF_A_LOAD = re.compile(rf"(F_[XY])\.({'|'.join(OF_LOADS)})(_\d+)?")  # stiffness_2 is of a second spring

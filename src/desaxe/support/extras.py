@@ -14,7 +14,6 @@ EXTRAS = {
         "scale": "dask distributed",
         "plot": "matplotlib",
         "units": "pint",
-        "scene": "tqdm",
         "explore": "plotly",
         "excel": "xlsxwriter openpyxl",
         "fmu": "fmpy",

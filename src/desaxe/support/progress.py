@@ -3,11 +3,9 @@
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from shutil import get_terminal_size
 from threading import Event, Lock, Thread
 from time import monotonic
-from typing import Any
-
-from .forks import IMPORTS
 
 # Called before each step: steps done, steps in all, what comes next.
 Progress = Callable[[int, int, str], None]
@@ -16,7 +14,7 @@ Count = Callable[[int, bool], None]  # points that are done now, and whether the
 
 DELAY = 1.0  # seconds without a bar
 PACE = 0.2  # seconds between two looks
-FORMAT = "{n_fmt} of {total_fmt} {unit} |{bar}| {desc}"
+CLEARED = "\r\x1b[K"  # the start of the line, and nothing behind it
 
 
 class Steps:
@@ -65,43 +63,34 @@ _drawn = Lock()  # held while a bar is: one at a time
 def progress_bar(delay: float = DELAY, unit: str = "steps") -> Iterator[Progress | None]:
     """A bar on stderr that appears after `delay` seconds and leaves no trace.
 
-    None where stderr is not a terminal, tqdm is not installed, or a bar is there already.
+    None where stderr is not a terminal, or a bar is there already.
     """
     if not sys.stderr.isatty() or not _drawn.acquire(blocking=False):
         yield None
         return
-    try:
-        with _bar(delay, unit) as watch:
-            yield watch
-    finally:
-        _drawn.release()
-
-
-@contextmanager
-def _bar(delay: float, unit: str) -> Iterator[Progress | None]:
-    try:
-        with IMPORTS:
-            from tqdm import tqdm
-    except ModuleNotFoundError:
-        yield None
-        return
     state: list[tuple[int, int, str]] = [(0, 1, "")]
     over = Event()
-    thread = Thread(target=_show, args=(tqdm, state, over, delay, unit), daemon=True)
+    thread = Thread(target=_draw, args=(state, over, delay, unit), daemon=True)
     thread.start()
     try:
         yield lambda done, total, what: state.__setitem__(0, (done, total, what))
     finally:
         over.set()
         thread.join()
+        _drawn.release()
 
 
-def _show(tqdm: Any, state: list[tuple[int, int, str]], over: Event, delay: float, unit: str) -> None:
+def _draw(state: list[tuple[int, int, str]], over: Event, delay: float, unit: str) -> None:
     """Draw the current state until the run ends; in its own thread, since one step can take long."""
     if over.wait(delay):
         return
-    form = FORMAT.replace("{unit}", unit)
-    with tqdm(total=state[0][1], bar_format=form, leave=False, file=sys.stderr, dynamic_ncols=True) as bar:
-        while not over.wait(PACE):
-            bar.n, bar.total, what = state[0]
-            bar.set_description_str(what, refresh=True)
+    while not over.wait(PACE):
+        done, total, what = state[0]
+        head, tail = f"{done} of {total} {unit} |", f"| {what}"
+        columns = get_terminal_size().columns - 1
+        bar = max(0, columns - len(head) - len(tail))
+        full = bar * min(done, total) // max(1, total)
+        sys.stderr.write(CLEARED + f"{head}{'#' * full:{bar}}{tail}"[:columns])
+        sys.stderr.flush()
+    sys.stderr.write(CLEARED)
+    sys.stderr.flush()

@@ -12,9 +12,9 @@ from ...design.steady.result import NUMBERS, Steady
 from ...design.steady.steady import FLUCTUATION, FLYWHEEL, steady
 from ...evaluation.labels import input_attributes
 from ...loads.motors import Motor
-from ...mechanism.inputs import Input
+from ...mechanism.inputs import OTHERS, Input
 from ...mechanism.names import LENGTHS
-from ...mechanism.quantity_units import OTHERS, UnitSystem
+from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import SteadyStatus
 from ..reading.loads import motor_of
 from ..reading.values import Value, read_number
