@@ -13,5 +13,4 @@ design_map       quantities over a space of designs
 measures         quantities of a design by name, with derivatives
 drive/           torque, power, flywheel and starting torque of a drive
 fit/             parameters of a machine from measurements
-averages         mean, rms and values at an angle as measures
 """

@@ -130,7 +130,7 @@ def _status(design: Turn) -> int:
 
 
 def _integrands(torque: Array, speed: Array) -> dict[str, tuple[Array, Any, Any]]:
-    """What is integrated over the angle; its derivatives by the torque, > 0 where it drives, and speed."""
+    """Integrands over the angle, and their derivatives by the torque, > 0 where it drives, and the speed."""
     driven = torque > 0.0
     return {
         "time": (1.0 / speed, 0.0, -1.0 / speed**2),

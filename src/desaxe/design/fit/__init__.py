@@ -4,7 +4,6 @@ fit         the public call
 data        measurements: mappings, tables, labelled arrays, CSV files
 unknowns    parameters and nuisances: starts, bounds, scales
 model       residuals and their exact Jacobian
-projection  biases and scales, which are linear: solved for at each step
 solve       the search from several starts
 spread      covariance, the directions that the data leave open, and the scaled gradient
 result      what was found: numbers, prediction bands, report, plot

@@ -17,8 +17,7 @@ from ...mechanism.read import read
 from ...support.deadline import Deadline
 from ...support.shown import shown
 from ..measures import Measure, checked, is_named, text_of
-from .kinks import sides_of
-from .problem import EQUAL, LOWER, UPPER, Limit, SmoothTerm, Space
+from .problem import EQUAL, LOWER, UPPER, Limit, SmoothTerm, Space, sides_of
 
 EQUATION = "=="  # in place of a lower end
 

@@ -14,9 +14,8 @@ from ...support.signals import put_off
 from .objectives import goals_of, limits_of, space_of
 
 with put_off(), explained("optimize", "design"):
-    from .one_objective import solved
+    from .one_objective import front, solved
     from .optimum import units_of_optimum
-    from .pareto import front
 
 
 @with_known_keywords

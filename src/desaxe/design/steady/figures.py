@@ -21,8 +21,7 @@ from ...runtime.request import request
 from ...support.panels import WEIGHT
 from ..turn.cycle import NEAR
 from .designs import DesignRows
-from .linear import Linear
-from .orbit import Orbit
+from .orbit import Linear, Orbit
 
 Array = NDArray[Any]
 KEYS = ("period", "omega_mean", "fluctuation", "power_mean")  # that have derivatives

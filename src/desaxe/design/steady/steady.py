@@ -14,13 +14,11 @@ from ...mechanism.names import LENGTHS
 from ...mechanism.read import read_array
 from ...runtime.request import check_common, check_sliders
 from ...support.shown import shown
-from ..turn.cycle import MOST_TURNS
-from ..turn.rows import input_rows
+from ..turn.cycle import MOST_TURNS, input_rows
 from .designs import DesignRows
-from .inertia import with_flywheels
 from .result import Steady, result_of
 from .source import source_of
-from .states import states_of
+from .states import states_of, with_flywheels
 
 Array = NDArray[Any]
 OWN = ("torque", "flywheel_inertia", "fluctuation", "branch")

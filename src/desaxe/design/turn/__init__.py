@@ -1,6 +1,5 @@
 """Quantities over one whole cycle of a design.
 
-rows           the inputs of a call as designs in rows
 cycle          designs in panels between edges, and how jumps move
 turn           one design, checked
 harmonics      Fourier series at constant speed

@@ -17,8 +17,7 @@ from ...mechanism.status import CrossingStatus
 from ...runtime.request import check_common, is_steady
 from ...support.answer import Answer
 from ...support.panels import Array, Panels
-from .cycle import MOST_TURNS, Cycle
-from .rows import input_rows
+from .cycle import MOST_TURNS, Cycle, input_rows
 
 TOGETHER = 3e-8  # rad: crossings that are nearer are one, or a tangency
 EQUAL = 1e-14  # of the largest value: a difference that is none

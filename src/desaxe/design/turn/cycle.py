@@ -9,13 +9,16 @@ A quantity may jump at some of them, which move with the design: at the angle t(
 value, c(t, p) = 0, an integral over the angle gains (before - after) dt/dp with dt/dp = -c_p/c_t.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...definitions.conditions import conditions_of
+from ...evaluation.arrays import are_good, as_array, broadcast_shape
 from ...evaluation.evaluate import evaluate
+from ...evaluation.under_loads.loaded import loads_of
 from ...loads.along_motion import members_of, speeds_of, with_derivatives
 from ...loads.angles import crossings, meeting_angles, shift
 from ...loads.load import Load, OverY
@@ -23,10 +26,61 @@ from ...mechanism.catalogue import has
 from ...mechanism.closed.angles import dead_centres, repeated
 from ...mechanism.names import LENGTHS, sensitivity
 from ...mechanism.own import used_by, using
-from ...runtime.request import request
+from ...runtime.request import as_number, request
 from ...support.computed import computed_once
 from ...support.panels import WIDEST, Array, Panels, resolved
 from ...support.roots import sign_changes
+
+
+class InputRows(NamedTuple):
+    """The inputs of designs: a number for all of them, or an array with one for each.
+
+    more   further numbers of a caller; `bad` are designs with a number that is no value of its input
+    """
+
+    shape: tuple[int, ...]
+    numbers: dict[str, Any]
+    more: dict[str, Any]
+    loads: dict[str, Load]
+    bad: NDArray[np.bool_]
+
+    @property
+    def size(self) -> int:
+        """The number of designs."""
+        return self.bad.size
+
+    def each(self, value: Any) -> Array:
+        """One number for each design."""
+        return np.broadcast_to(value, (self.size,))
+
+
+def input_rows(
+    caller: str,
+    inputs: Mapping[str, Any],
+    more: Mapping[str, Array] | None = None,
+    needed: Iterable[str] = LENGTHS,
+) -> InputRows:
+    """The inputs that are not None, broadcast; an error names one that is missing, or wholly bad."""
+    numbers, loads = loads_of({name: value for name, value in inputs.items() if value is not None})
+    for name in needed:
+        if name not in numbers:
+            as_number(name, None, LENGTHS, (caller,))
+    arrays = {name: as_array(name, value, LENGTHS, (caller,)) for name, value in numbers.items()}
+    more = more or {}
+    shape = broadcast_shape({**arrays, **more})
+    empty = next((name for name, a in {**arrays, **more}.items() if not a.size), None)
+    if empty is not None:
+        raise ValueError(f"{empty}: an empty array; expected at least one design")
+    good = [np.broadcast_to(are_good(name, a), shape) for name, a in arrays.items()]
+    good += [np.broadcast_to(np.isfinite(a), shape) for a in more.values()]
+    bad = ~np.logical_and.reduce([np.ones(shape, bool), *good]).reshape(-1)
+    scales = arrays if "omega" in arrays or "omega0" in arrays else {**arrays, "omega": np.array(1.0)}
+
+    def rows(values: Mapping[str, Array]) -> dict[str, Any]:
+        return {n: np.broadcast_to(v, shape).reshape(-1) if v.ndim else v.item() for n, v in values.items()}
+
+    return InputRows(shape, rows(arrays), rows(more), with_derivatives(loads, scales), bad)
+
 
 MOST_TURNS = 4  # after which the loads must repeat; two in a four-stroke engine
 NEAR = 1e-9  # rad: an edge is where something keeps its value
