@@ -157,23 +157,13 @@ def test_tables_labels_and_files(tmp_path, capsys):
         "[motion]\ntheta = 1\nomega0 = 150\n",
         encoding="utf-8",
     )
-    words = [
-        "--over",
-        "ec",
-        "AB=100mm:150mm",
-        "BC",
-        "--sigma",
-        "a_C=5",
-        "--nuisance",
-        "theta_offset",
-        "--json",
-    ]
-    assert main(["fit", str(scene), str(path), *words]) == 0
+    words = ["over=ec,AB,BC", "sigma.a_C=5", "nuisance=theta_offset", "--machine", str(scene)]
+    assert main(["fit", str(path), *words, "--json"]) == 0
     capsys.readouterr()
     scene.write_text(
         'units = "mm"\n' + scene.read_text(encoding="utf-8").replace("0.36", "360"), encoding="utf-8"
     )
-    assert main(["fit", str(scene), str(path), *words[:-1]]) == 0
+    assert main(["fit", str(path), *words]) == 0
     (row,) = [line.split() for line in capsys.readouterr().out.splitlines() if " AB [mm] " in line]
     assert float(row[2]) == pytest.approx(1e3 * expected["AB"], rel=1e-6)
 
@@ -281,9 +271,9 @@ def test_a_scene_gives_all_of_its_machine(tmp_path, capsys):
     rows = zip(THETA.tolist(), samples.tolist(), strict=True)
     path.write_text("\n".join(["theta,T_in", *(f"{a!r},{b!r}" for a, b in rows)]), encoding="utf-8")
     scene.write_text(SCENE.format(mu=0.1), encoding="utf-8")
-    assert main(["fit", str(scene), str(path), "--over", "m_slider", "--json"]) == 0
+    assert main(["fit", str(path), "over=m_slider", "--machine", str(scene), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert (found["status"], found["value"]["m_slider"]) == (0, pytest.approx(4.0, rel=1e-12))
     scene.write_text(SCENE.format(mu=[0.1, 0.2]), encoding="utf-8")
-    assert main(["fit", str(scene), str(path), "--over", "m_slider"]) == 2
+    assert main(["fit", str(path), "over=m_slider", "--machine", str(scene)]) == 2
     assert "mu: 2 values, and a fit is of one machine" in capsys.readouterr().err
