@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 import desaxe as dx
 from desaxe.compiler.operations import OPERATIONS
-from desaxe.compiler.passes.differentiate import RULES, with_derivatives
+from desaxe.compiler.passes.differentiate import CONSTANT, LINEAR, RULES, with_derivatives
 from desaxe.enclosure import balls as _balls
 from desaxe.mechanism.program import LAW as LAW_FORM
 from desaxe.oracle.force_truth import force_names, truth
@@ -474,4 +474,4 @@ def test_every_operation_has_its_rules():
     numbers = {op for op, row in OPERATIONS.items() if row.signature[-1] == "f" or op == "copy"}
     tables = {op for op, row in OPERATIONS.items() if "t" in row.signature}  # `enclose` takes no loads
     assert numbers - set(_balls._NUMBERS) <= {"floor", *tables}  # floor: of the written-out sine alone
-    assert numbers - set(RULES) <= {"floor"}
+    assert numbers - {*RULES, *LINEAR, *CONSTANT} <= {"floor", "lookup", "lookup_slope"}

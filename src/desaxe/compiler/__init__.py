@@ -1,7 +1,6 @@
 """The compiler: a frozen Program, passes over it, and emitters. No SymPy, nothing of the library.
 
     operations  the operation table: meaning, spellings, cost, one row each
-    instructions  operations that take LLVM several instructions
     program     Program, a list of single assignments, and its canonical form
     text        a Program as readable Python, and back, parsing only what is needed
     helpers     functions that spellings call, in plain Python
@@ -13,7 +12,6 @@
     kernel      a loop nest whose bodies are Programs
     llvm        machine code in memory, what the library itself runs
     languages   Python, numba, C, jax, Octave and JavaScript, one file or folder each
-    llvm        machine code in memory, what the library itself runs
     forms       plain and stable lines as one program, set apart in a kernel
 
 The room imports nothing of the library but `support`. To add an operation, add its row; a

@@ -20,11 +20,12 @@ follow those of the way there. A search is an operation of its own, which a valu
 tightest.
 """
 
+import re
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from . import instructions
+from ..support.template import file_text
 
 CALL = 100
 
@@ -44,7 +45,7 @@ class Operation(NamedTuple):
     c: str
     jax: str
     octave: str
-    llvm: str  # instructions (see `instructions`); one of single doubles goes over a vector's elements
+    llvm: str  # instructions (see instructions.ll); one of single doubles goes over a vector's elements
     cost: float  # relative to one addition, throughput in a vectorised loop
     exact: Callable[..., Any]  # exact(mp, *args)
     undefined: str = ""  # where the real function has no value
@@ -60,20 +61,40 @@ _FIELDS = Operation._fields
 COLUMNS = _FIELDS[_FIELDS.index("python") : _FIELDS.index("cost")]  # of languages
 
 
-def _row(
+# Operations that take LLVM several instructions, and those that it has under another name.
+INSTRUCTIONS: dict[str, str] = dict(
+    re.findall(r"^; (\w+).*\n((?:[^;\n].*\n)+)", file_text(__package__, "instructions.ll"), re.MULTILINE)
+)
+INTRINSICS = {"abs": "fabs", "copysign": "copysign", "floor": "floor", "mul_add": "fmuladd", "sqrt": "sqrt"}
+LLVM_TYPES = {"f": "double", "b": "i1", "i": "i64", "t": "ptr", "T": "{T}"}
+
+
+def _infix(
     name: str, signature: str, text: str, precedence: int, cost: float, exact: Callable[..., Any], **more: Any
 ) -> tuple[str, Operation]:
-    more = dict.fromkeys(COLUMNS, text) | {"llvm": more.get("llvm") or _llvm_call(name, signature)} | more
-    return name, Operation(name, signature, text, precedence, cost=cost, exact=exact, **more)
+    columns = dict.fromkeys(COLUMNS, text) | {"llvm": _llvm(name, signature)} | more
+    return name, Operation(name, signature, text, precedence, cost=cost, exact=exact, **columns)
 
 
-LLVM_TYPES = {"f": "double", "b": "i1", "i": "i64", "T": "{T}"}
+def _call(
+    name: str, signature: str, cost: float, exact: Callable[..., Any], function: str = "", **more: Any
+) -> tuple[str, Operation]:
+    """A row that all languages spell as a call, of the function's name but where `more` has another."""
+    arguments = ", ".join(f"{{{k}}}" for k in range(len(signature) - 1))
+    columns = {k: f"{v}({arguments})" if k in COLUMNS and "{" not in v else v for k, v in more.items()}
+    return _infix(name, signature, f"{function or name}({arguments})", CALL, cost, exact, **columns)
 
 
-def _llvm_call(function: str, signature: str) -> str:
-    """A call of a function in LLVM's language, at one point."""
-    arguments = [f"{LLVM_TYPES[letter]} {{{k}}}" for k, letter in enumerate(signature[:-1])]
-    return f"call {LLVM_TYPES[signature[-1]]} @{function}({', '.join(arguments)})"
+def _llvm(name: str, signature: str) -> str:
+    """Instructions of LLVM: a call of a function, at one point, or of an intrinsic one."""
+    if name in INSTRUCTIONS:
+        return INSTRUCTIONS[name]
+    numbered = [*enumerate(signature[:-1])]
+    if name in INTRINSICS:
+        arguments = ", ".join(f"{{f}} {{{k}}}" for k, _ in numbered)
+        return f"call {{f}} @llvm.{INTRINSICS[name]}.{{s}}({arguments})"
+    arguments = ", ".join(f"{LLVM_TYPES[letter]} {{{k}}}" for k, letter in numbered)
+    return f"call {LLVM_TYPES[signature[-1]]} @{name}({arguments})"
 
 
 def _table_row(
@@ -87,7 +108,7 @@ def _table_row(
     llvm = f"call {{f}} @{name}.{{s}}({{f}} {{0}}, ptr {{1}}.x, ptr {{1}}.c, i64 {{1}}.n, {{f}} {{2}})"
     columns = dict.fromkeys(COLUMNS, spelled(name, arrays[1:])) | {"llvm": llvm}
     columns |= {"c": spelled(name, f"{arrays[1:]}n"), "octave": spelled(octave, arrays[1:])}
-    return _row(name, "ftff", f"{name}({{0}}, {{1}}, {{2}})", CALL, cost, exact, **columns)
+    return _call(name, "ftff", cost, exact, **columns)
 
 
 def _power_of_two(mp: Any, a: Any) -> Any:
@@ -118,122 +139,58 @@ def _lookup_slope(mp: Any, x: Any, table: Content, piece: Any) -> Any:
     return b + s * (2 * c + s * (3 * d))
 
 
-OPERATIONS: dict[str, Operation] = dict(
-    [
-        _row("copy", "TT", "{0}", CALL, 0, lambda mp, a: a, llvm="{0}"),
-        _row(
-            "add", "fff", "{0} + {1}", 12, 1, lambda mp, a, b: a + b, llvm="fadd {f} {0}, {1}",
-            commutes=True,
-        ),
-        _row("sub", "fff", "{0} - {1}", 12, 1, lambda mp, a, b: a - b, llvm="fsub {f} {0}, {1}"),
-        _row(
-            "mul", "fff", "{0} * {1}", 13, 1, lambda mp, a, b: a * b,
-            octave="{0} .* {1}", llvm="fmul {f} {0}, {1}", commutes=True,
-        ),
-        _row(
-            "div", "fff", "{0} / {1}", 13, 8, lambda mp, a, b: a / b,
-            python="divide({0}, {1})", octave="{0} ./ {1}", llvm="fdiv {f} {0}, {1}", undefined="{1} == 0",
-        ),
-        _row("neg", "ff", "-{0}", 14, 0.5, lambda mp, a: -a, llvm="fneg {f} {0}"),
-        _row(
-            "abs", "ff", "fabs({0})", CALL, 0.5, lambda mp, a: abs(a),
-            octave="abs({0})", llvm="call {f} @llvm.fabs.{s}({f} {0})",
-        ),
-        _row(
-            "sqrt", "ff", "sqrt({0})", CALL, 9, lambda mp, a: mp.sqrt(a),
-            python="root({0})", octave="root({0})", llvm="call {f} @llvm.sqrt.{s}({f} {0})",
-            undefined="{0} < 0",
-        ),
-        _row("sin", "ff", "sin({0})", CALL, 20, lambda mp, a: mp.sin(a), python="sine({0})"),
-        _row("cos", "ff", "cos({0})", CALL, 20, lambda mp, a: mp.cos(a), python="cosine({0})"),
-        _row("atan2", "fff", "atan2({0}, {1})", CALL, 40, lambda mp, a, b: mp.atan2(a, b)),
-        _row(
-            "hypot", "fff", "hypot({0}, {1})", CALL, 20, lambda mp, a, b: mp.sqrt(a * a + b * b),
-            llvm=instructions.HYPOT, commutes=True,
-        ),
-        _row("exp", "ff", "exp({0})", CALL, 20, lambda mp, a: mp.exp(a), python="exponential({0})"),
-        _row(
-            "log", "ff", "log({0})", CALL, 20, lambda mp, a: mp.log(a),
-            python="logarithm({0})", octave="logarithm({0})", undefined="{0} < 0",
-        ),
-        _row(
-            "pow", "fff", "pow({0}, {1})", CALL, 60, lambda mp, a, b: mp.power(a, b),
-            python="power({0}, {1})", octave="power_of({0}, {1})",
-        ),
-        _row(
-            "floor", "ff", "floor({0})", CALL, 1, lambda mp, a: mp.floor(a),
-            python="whole({0})", llvm="call {f} @llvm.floor.{s}({f} {0})",
-        ),
-        _row(
-            "copysign", "fff", "copysign({0}, {1})", CALL, 1,
-            lambda mp, a, b: abs(a) if b >= 0 else -abs(a),
-            llvm="call {f} @llvm.copysign.{s}({f} {0}, {f} {1})",
-        ),
-        _row(
-            "two_sum_error", "fff", "two_sum_error({0}, {1})", CALL, 5, lambda mp, a, b: a * 0,
-            llvm=instructions.TWO_SUM_ERROR, commutes=True,
-        ),
-        _row(
-            "two_product_error", "fff", "two_product_error({0}, {1})", CALL, 1, lambda mp, a, b: a * 0,
-            llvm=instructions.TWO_PRODUCT_ERROR, commutes=True,
-        ),
-        _row(
-            "mul_add", "ffff", "mul_add({0}, {1}, {2})", CALL, 1, lambda mp, a, b, c: a * b + c,
-            llvm="call {f} @llvm.fmuladd.{s}({f} {0}, {f} {1}, {f} {2})",
-        ),
-        _row(
-            "rounding", "ff", "rounding({0})", CALL, 1.5, lambda mp, a: a * 0, llvm=instructions.ROUNDING
-        ),
-        _row(
-            "power_of_two", "ff", "power_of_two({0})", CALL, 6, _power_of_two,
-            llvm=instructions.POWER_OF_TWO,
-        ),
-        _row(
-            "rotated_sin", "ffff", "rotated_sin({0}, {1}, {2})", CALL, 4,
-            lambda mp, sine, cosine, quarters: (sine, cosine, -sine, -cosine)[int(quarters) % 4],
-            llvm=instructions.ROTATED_SIN,
-        ),
-        _row(
-            "rotated_cos", "ffff", "rotated_cos({0}, {1}, {2})", CALL, 2,
-            lambda mp, sine, cosine, quarters: (cosine, -sine, -cosine, sine)[int(quarters) % 4],
-            llvm=instructions.ROTATED_COS,
-        ),
-        _row(
-            "lt", "ffb", "{0} < {1}", 6, 1, lambda mp, a, b: a < b, llvm="fcmp olt {f} {0}, {1}"
-        ),
-        _row(
-            "le", "ffb", "{0} <= {1}", 6, 1, lambda mp, a, b: a <= b, llvm="fcmp ole {f} {0}, {1}"
-        ),
-        _row(
-            "eq", "ffb", "{0} == {1}", 6, 1, lambda mp, a, b: a == b, llvm="fcmp oeq {f} {0}, {1}",
-            commutes=True,
-        ),
-        _row(
-            "and", "bbb", "{0} and {1}", 4, 0.5, lambda mp, a, b: a and b,
-            numba="{0} & {1}", javascript="({0} && {1})", c="({0} && {1})", jax="logical_and({0}, {1})",
-            llvm="and {b} {0}, {1}", octave="({0} & {1})",
-        ),
-        _row(
-            "or", "bbb", "{0} or {1}", 3, 0.5, lambda mp, a, b: a or b,
-            numba="{0} | {1}", javascript="({0} || {1})", c="({0} || {1})", jax="logical_or({0}, {1})",
-            llvm="or {b} {0}, {1}", octave="({0} | {1})",
-        ),
-        _row(
-            "not", "bb", "not {0}", 5, 0.5, lambda mp, a: not a,
-            javascript="!({0})", c="!({0})", jax="logical_not({0})", octave="~({0})",
-            llvm="xor {b} {0}, {true}",
-        ),
-        _row("extended_only", "bb", "extended_only({0})", CALL, 0, lambda mp, a: False, llvm="{false}"),
-        _row(
-            "select", "bTTT", "{1} if {0} else {2}", 1, 1, lambda mp, c, a, b: a if c else b,
-            javascript="({0} ? {1} : {2})", c="({0} ? {1} : {2})", jax="where({0}, {1}, {2})",
-            octave="select({0}, {1}, {2})", llvm="select {b} {0}, {T} {1}, {T} {2}",
-        ),
-        _table_row("lookup_piece", "_x", 40, _piece, octave="lookup_piece"),
-        _table_row("lookup", "_xc", 12, _lookup, octave="looked_up"),
-        _table_row("lookup_slope", "_xc", 12, _lookup_slope, octave="looked_up_slope"),
-    ]
+_INFIX = (
+    _infix("add", "fff", "{0} + {1}", 12, 1, lambda mp, a, b: a + b, llvm="fadd {f} {0}, {1}", commutes=True),
+    _infix("sub", "fff", "{0} - {1}", 12, 1, lambda mp, a, b: a - b, llvm="fsub {f} {0}, {1}"),
+    _infix("mul", "fff", "{0} * {1}", 13, 1, lambda mp, a, b: a * b, octave="{0} .* {1}",
+           llvm="fmul {f} {0}, {1}", commutes=True),
+    _infix("div", "fff", "{0} / {1}", 13, 8, lambda mp, a, b: a / b, python="divide({0}, {1})",
+           octave="{0} ./ {1}", llvm="fdiv {f} {0}, {1}", undefined="{1} == 0"),
+    _infix("neg", "ff", "-{0}", 14, 0.5, lambda mp, a: -a, llvm="fneg {f} {0}"),
+    _infix("lt", "ffb", "{0} < {1}", 6, 1, lambda mp, a, b: a < b, llvm="fcmp olt {f} {0}, {1}"),
+    _infix("le", "ffb", "{0} <= {1}", 6, 1, lambda mp, a, b: a <= b, llvm="fcmp ole {f} {0}, {1}"),
+    _infix("eq", "ffb", "{0} == {1}", 6, 1, lambda mp, a, b: a == b, llvm="fcmp oeq {f} {0}, {1}",
+           commutes=True),
+    _infix("and", "bbb", "{0} and {1}", 4, 0.5, lambda mp, a, b: a and b, numba="{0} & {1}",
+           javascript="({0} && {1})", c="({0} && {1})", jax="logical_and({0}, {1})", octave="({0} & {1})",
+           llvm="and {b} {0}, {1}"),
+    _infix("or", "bbb", "{0} or {1}", 3, 0.5, lambda mp, a, b: a or b, numba="{0} | {1}",
+           javascript="({0} || {1})", c="({0} || {1})", jax="logical_or({0}, {1})", octave="({0} | {1})",
+           llvm="or {b} {0}, {1}"),
+    _infix("not", "bb", "not {0}", 5, 0.5, lambda mp, a: not a, javascript="!({0})", c="!({0})",
+           jax="logical_not({0})", octave="~({0})", llvm="xor {b} {0}, {true}"),
+    _infix("select", "bTTT", "{1} if {0} else {2}", 1, 1, lambda mp, c, a, b: a if c else b,
+           javascript="({0} ? {1} : {2})", c="({0} ? {1} : {2})", jax="where({0}, {1}, {2})",
+           octave="select({0}, {1}, {2})", llvm="select {b} {0}, {T} {1}, {T} {2}"),
 )  # fmt: skip
+_CALLS = (
+    _call("abs", "ff", 0.5, lambda mp, a: abs(a), "fabs", octave="abs"),
+    _call("sqrt", "ff", 9, lambda mp, a: mp.sqrt(a), python="root", octave="root", undefined="{0} < 0"),
+    _call("sin", "ff", 20, lambda mp, a: mp.sin(a), python="sine"),
+    _call("cos", "ff", 20, lambda mp, a: mp.cos(a), python="cosine"),
+    _call("atan2", "fff", 40, lambda mp, a, b: mp.atan2(a, b)),
+    _call("hypot", "fff", 20, lambda mp, a, b: mp.sqrt(a * a + b * b), commutes=True),
+    _call("exp", "ff", 20, lambda mp, a: mp.exp(a), python="exponential"),
+    _call(
+        "log", "ff", 20, lambda mp, a: mp.log(a), python="logarithm", octave="logarithm", undefined="{0} < 0"
+    ),
+    _call("pow", "fff", 60, lambda mp, a, b: mp.power(a, b), python="power", octave="power_of"),
+    _call("floor", "ff", 1, lambda mp, a: mp.floor(a), python="whole"),
+    _call("copysign", "fff", 1, lambda mp, a, b: abs(a) if b >= 0 else -abs(a)),
+    _call("two_sum_error", "fff", 5, lambda mp, a, b: a * 0, commutes=True),
+    _call("two_product_error", "fff", 1, lambda mp, a, b: a * 0, commutes=True),
+    _call("mul_add", "ffff", 1, lambda mp, a, b, c: a * b + c),
+    _call("rounding", "ff", 1.5, lambda mp, a: a * 0),
+    _call("power_of_two", "ff", 6, _power_of_two),
+    _call("rotated_sin", "ffff", 4, lambda mp, s, c, quarters: (s, c, -s, -c)[int(quarters) % 4]),
+    _call("rotated_cos", "ffff", 2, lambda mp, s, c, quarters: (c, -s, -c, s)[int(quarters) % 4]),
+    _call("extended_only", "bb", 0, lambda mp, a: False, llvm="{false}"),
+    _table_row("lookup_piece", "_x", 40, _piece, octave="lookup_piece"),
+    _table_row("lookup", "_xc", 12, _lookup, octave="looked_up"),
+    _table_row("lookup_slope", "_xc", 12, _lookup_slope, octave="looked_up_slope"),
+)
+_COPY = _infix("copy", "TT", "{0}", CALL, 0, lambda mp, a: a, llvm="{0}")
+OPERATIONS: dict[str, Operation] = dict([_COPY, *_INFIX, *_CALLS])
 
 MATH_NAMES = (
     "atan2", "copysign", "cos", "exp", "fabs", "floor", "inf", "log", "nan", "pow", "sin", "sqrt",

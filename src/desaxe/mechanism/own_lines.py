@@ -5,13 +5,13 @@ uses. Only where a name has none (a sensitivity, the margin) its lines are diffe
 has no derivative at 0 (NaN); at a kink the derivative is that of the side that is taken.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from functools import lru_cache
 from math import nan
 from typing import NamedTuple
 
 from ..compiler.passes.differentiate import RULES as EVERYWHERE
-from ..compiler.passes.differentiate import Chain, Rule, Step
+from ..compiler.passes.differentiate import SIGNED, Chain
 from ..compiler.passes.slicing import keep_outputs
 from ..compiler.program import Argument, Line, Note, Program, names_in, renamed
 from ..compiler.text import ProgramText
@@ -30,26 +30,9 @@ def line_name(name: str, own: Iterable[Definition]) -> str:
     return joined(f"{PREFIX}{base}{SUFFIX}", parameters) if is_own else name
 
 
-def _abs(chain: Chain, line: Line) -> Step:
-    (a,) = line.args
-    slope = chain.slope(a)
-    above = chain.new("lt", 0.0, a, type="bool")
-    rising = chain.new("select", above, slope, nan)
-    below = chain.new("lt", a, 0.0, type="bool")
-    return "select", (below, chain.new("neg", slope), rising)
-
-
-def _copysign(chain: Chain, line: Line) -> Step:
-    size, sign = line.args
-    return "mul", (chain.slope(size), chain.new("mul", _sign(chain, size), _sign(chain, sign)))
-
-
-def _sign(chain: Chain, argument: Argument) -> str:
-    return chain.new("copysign", 1.0, argument)
-
-
+_SIZE = "-da if a < 0.0 else da if 0.0 < a else nan"
 # As for balls, but for the sign, which a double knows.
-RULES: Mapping[str, Rule] = {**EVERYWHERE, "abs": _abs, "copysign": _copysign}
+RULES = {**EVERYWHERE, "abs": _SIZE, "abs_sin": _SIZE, "copysign": SIGNED}
 
 
 class _Chain(Chain):

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiler.lowering import for_loops, nest
-from ..compiler.passes.differentiate import RULES, Chain, Rule, Step
+from ..compiler.passes.differentiate import RULES, SIGNED, Chain
 from ..compiler.passes.pipeline import optimise
 from ..compiler.passes.slicing import keep_outputs
 from ..compiler.program import Line, Program
@@ -128,27 +128,9 @@ def _differentiated(program: Program, name: str, parameter: str) -> tuple[Progra
     return with_short_temporaries(longer), own
 
 
-def _sign(chain: Chain, *factors: str) -> str:
-    """The sign of a product, from the signs of its factors."""
-    sign = chain.new("copysign", 1.0, factors[0])
-    for factor in factors[1:]:
-        sign = chain.new("mul", sign, chain.new("copysign", 1.0, factor))
-    return sign
-
-
-def _abs(chain: Chain, line: Line) -> Step:
-    (a,) = line.args
-    return "mul", (chain.slope(a), _sign(chain, str(a)))
-
-
-def _copysign(chain: Chain, line: Line) -> Step:
-    size, sign = line.args
-    own = [str(size)] if isinstance(size, str) else []
-    return "mul", (chain.slope(size), _sign(chain, *own, str(sign)))
-
-
 # A double knows its sign; the rules of balls leave it to what is known of the whole ball.
-_RULES: Mapping[str, Rule] = {**RULES, "abs": _abs, "copysign": _copysign}
+_SIGNED = "da * copysign(1.0, a)"
+_RULES = {**RULES, "abs": _SIGNED, "abs_sin": _SIGNED, "copysign": SIGNED}
 
 
 # ---- compiled --------------------------------------------------------------------------------------

@@ -4,9 +4,12 @@ The chain rule on the lines as they stand. It loses digits where the derivation'
 keep them, so it is for enclosures alone, where a loss is seen.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from functools import cache
 
 from ..program import Argument, Line, Program, ProgramError
+from ..text import read_function
+from .fold import fold_constants
 from .pipeline import optimise
 
 _PREFIX, _JOINT = "d_", "_by_"
@@ -33,15 +36,43 @@ def with_derivatives(program: Program, parameters: tuple[str, ...]) -> Program:
     return optimise(program._replace(lines=tuple(lines), outputs=tuple(outputs)))
 
 
+# The derivative of an operation, or of a line of that name: of arguments a, b, c with derivatives da, db, dc,
+# and of the value r.
+RULES: Mapping[str, str] = {
+    "mul": "da * b + a * db",
+    "mul_add": "mul_add(a, db, mul_add(da, b, dc))",
+    "div": "(da - r * db) / b",
+    "abs": "-da if a < 0.0 else da",
+    "abs_sin": "copysign(da, a)",  # the side that the whole box was given: balls know the sign
+    "sqrt": "da / (2.0 * r)",
+    "sin": "cos(a) * da",
+    "cos": "-(sin(a) * da)",
+    "atan2": "(b * da - a * db) / (b * b + a * a)",
+    "hypot": "mul_add(b / r, db, a / r * da)",
+    "exp": "r * da",
+    "log": "da / a",
+    "pow": "b * pow(a, b - 1.0) * da + r * log(a) * db",
+}
+# A double knows its sign, and that there is none at a kink.
+SIGNED = "da * (copysign(1.0, a) * copysign(1.0, b))"
+# Operations that are linear in their arguments but for those at these indices; a jump has no slope.
+LINEAR: Mapping[str, tuple[int, ...]] = {
+    **dict.fromkeys(("copy", "add", "sub", "neg"), ()),
+    "select": (0,),
+    "copysign": (1,),
+    **dict.fromkeys(("rotated_sin", "rotated_cos"), (2,)),
+}
+# Constant but for jumps, or of a size that no value depends on.
+CONSTANT = ("two_sum_error", "two_product_error", "rounding", "power_of_two", "lookup_piece")
+
+
 class Chain:
     """The lines of the derivative by one parameter; the rules are those for balls, or others."""
 
-    def __init__(
-        self, parameter: str, rules: "Mapping[str, Rule] | None" = None, prefix: str = _PREFIX
-    ) -> None:
+    def __init__(self, parameter: str, rules: Mapping[str, str] = RULES, prefix: str = _PREFIX) -> None:
         self.parameter = parameter
         self.prefix = prefix  # begins the names of its lines
-        self.rules = RULES if rules is None else rules
+        self.rules = rules
         self.lines: list[Line] = []
         self.slopes: dict[str, Argument] = {}
 
@@ -53,12 +84,40 @@ class Chain:
 
     def through(self, line: Line) -> None:
         """The derivative of a line; nothing where it does not depend on the parameter."""
-        if line.type != "f64" or not any(self.slope(a) for a in line.args):
+        slopes = [self.slope(argument) for argument in line.args]
+        if line.type != "f64" or not any(slopes):
             return
         name = f"{self.prefix}{line.name}{_JOINT}{self.parameter}"
-        op, args = self.rules[line.op](self, line)
-        self.lines.append(Line(name, op, args))
+        rule = self.rules.get(line.name) or self.rules.get(line.op)
+        if rule:
+            names = dict(zip("abc", line.args, strict=False)) | {"r": line.name}
+            names |= {f"d{letter}": slope for letter, slope in zip("abc", slopes, strict=False)}
+            self._by_rule(name, rule, names)
+        elif line.op == "lookup":
+            slope = self.new("lookup_slope", *line.args)
+            self.lines.append(Line(name, "mul", (slope, slopes[0])))
+        elif line.op in CONSTANT:
+            self.lines.append(Line(name, "copy", (0.0,)))
+        elif line.op in LINEAR:
+            pairs = enumerate(zip(line.args, slopes, strict=True))
+            args = [a if k in LINEAR[line.op] else slope for k, (a, slope) in pairs]
+            self.lines.append(Line(name, line.op, tuple(args)))
+        else:
+            what = f"the slope of the table {line.args[1]!r}" if line.op == "lookup_slope" else line.op
+            raise ProgramError(f"{line.name!r}: {what} has no derivative here")
         self.slopes[line.name] = name
+
+    def _by_rule(self, name: str, rule: str, names: Mapping[str, Argument]) -> None:
+        """Append the lines of a rule without the terms of slopes that are 0."""
+        known = dict(names)
+        lines = [line._replace(args=_args(line, known)) for line in _read(rule).lines]
+        inputs = dict.fromkeys(a for a in known.values() if isinstance(a, str))
+        for line in fold_constants(Program(tuple(inputs), tuple(lines), ("result",), {})).lines:
+            args = _args(line, known)
+            if line.name == "result":
+                self.lines.append(Line(name, line.op, args))
+            else:
+                known[line.name] = self.new(line.op, *args, type=line.type)
 
     def new(self, op: str, *args: Argument, type: str = "f64") -> str:
         """A temporary."""
@@ -67,116 +126,11 @@ class Chain:
         return name
 
 
-Step = tuple[str, tuple[Argument, ...]]
-Rule = Callable[[Chain, Line], Step]
+def _args(line: Line, known: Mapping[str, Argument]) -> tuple[Argument, ...]:
+    return tuple(known.get(a, a) if isinstance(a, str) else a for a in line.args)
 
 
-def _mul(chain: Chain, line: Line) -> Step:
-    a, b = line.args
-    return "add", (chain.new("mul", chain.slope(a), b), chain.new("mul", a, chain.slope(b)))
-
-
-def _mul_add(chain: Chain, line: Line) -> Step:
-    a, b, c = line.args
-    first = chain.new("mul_add", chain.slope(a), b, chain.slope(c))
-    return "mul_add", (a, chain.slope(b), first)
-
-
-def _div(chain: Chain, line: Line) -> Step:
-    a, b = line.args
-    return "div", (chain.new("sub", chain.slope(a), chain.new("mul", line.name, chain.slope(b))), b)
-
-
-def _abs(chain: Chain, line: Line) -> Step:
-    (a,) = line.args
-    slope = chain.slope(a)
-    if line.name == "abs_sin":  # the side that the whole box was given
-        return "copysign", (slope, a)  # the balls know the sign
-    below = chain.new("lt", a, 0.0, type="bool")
-    return "select", (below, chain.new("neg", slope), slope)
-
-
-def _sqrt(chain: Chain, line: Line) -> Step:
-    return "div", (chain.slope(line.args[0]), chain.new("mul", 2.0, line.name))
-
-
-def _sin(chain: Chain, line: Line) -> Step:
-    (a,) = line.args
-    return "mul", (chain.new("cos", a), chain.slope(a))
-
-
-def _cos(chain: Chain, line: Line) -> Step:
-    (a,) = line.args
-    return "neg", (chain.new("mul", chain.new("sin", a), chain.slope(a)),)
-
-
-def _atan2(chain: Chain, line: Line) -> Step:
-    y, x = line.args
-    rotated_sin = chain.new("sub", chain.new("mul", x, chain.slope(y)), chain.new("mul", y, chain.slope(x)))
-    return "div", (rotated_sin, chain.new("add", chain.new("mul", x, x), chain.new("mul", y, y)))
-
-
-def _hypot(chain: Chain, line: Line) -> Step:
-    a, b = line.args
-    first = chain.new("mul", chain.new("div", a, line.name), chain.slope(a))
-    return "mul_add", (chain.new("div", b, line.name), chain.slope(b), first)
-
-
-def _log(chain: Chain, line: Line) -> Step:
-    (a,) = line.args
-    return "div", (chain.slope(a), a)
-
-
-def _pow(chain: Chain, line: Line) -> Step:
-    a, b = line.args
-    less = chain.new("pow", a, chain.new("sub", b, 1.0))
-    of_base = chain.new("mul", chain.new("mul", b, less), chain.slope(a))
-    if chain.slope(b) == 0.0:
-        return "copy", (of_base,)
-    of_power = chain.new("mul", chain.new("mul", line.name, chain.new("log", a)), chain.slope(b))
-    return ("copy", (of_power,)) if chain.slope(a) == 0.0 else ("add", (of_base, of_power))
-
-
-def _same(chain: Chain, line: Line) -> Step:
-    return line.op, tuple(map(chain.slope, line.args))
-
-
-def _rotated(chain: Chain, line: Line) -> Step:
-    return line.op, (*map(chain.slope, line.args[:2]), line.args[2])
-
-
-def _lookup(chain: Chain, line: Line) -> Step:
-    return "mul", (chain.new("lookup_slope", *line.args), chain.slope(line.args[0]))
-
-
-def _no_second_slope(line: Line) -> Step:
-    raise ProgramError(f"{line.name!r}: the slope of the table {line.args[1]!r} has no derivative here")
-
-
-RULES: Mapping[str, Rule] = {
-    **dict.fromkeys(("copy", "add", "sub", "neg"), _same),
-    "mul": _mul,
-    "mul_add": _mul_add,
-    "div": _div,
-    "abs": _abs,
-    "sqrt": _sqrt,
-    "sin": _sin,
-    "cos": _cos,
-    "atan2": _atan2,
-    "hypot": _hypot,
-    "exp": lambda chain, line: ("mul", (line.name, chain.slope(line.args[0]))),
-    "log": _log,
-    "pow": _pow,
-    "select": lambda chain, line: ("select", (line.args[0], *map(chain.slope, line.args[1:]))),
-    "two_sum_error": lambda chain, line: ("copy", (0.0,)),
-    "two_product_error": lambda chain, line: ("copy", (0.0,)),
-    "rounding": lambda chain, line: ("copy", (0.0,)),
-    "power_of_two": lambda chain, line: ("copy", (0.0,)),  # no value depends on it
-    "lookup_piece": lambda chain, line: ("copy", (0.0,)),
-    "lookup": _lookup,
-    "lookup_slope": lambda chain, line: _no_second_slope(line),
-    "rotated_sin": _rotated,
-    "rotated_cos": _rotated,
-    # The sign of the second is constant but for jumps; the balls know which it is.
-    "copysign": lambda chain, line: ("copysign", (chain.slope(line.args[0]), line.args[1])),
-}
+@cache
+def _read(rule: str) -> Program:
+    inputs = "a, b, c, da, db, dc, r"
+    return read_function(f"def rule({inputs}):\n    result = {rule}\n    return result\n")

@@ -1,28 +1,26 @@
-"""Operations that take LLVM several instructions: a line each, the last one is the value.
+; Operations that take LLVM several instructions: a line each, the last one is the value.
+;
+; {f}, {b} and {i} are the types of doubles, conditions and whole numbers, of vectors or single, {s} the end of
+; the names of intrinsics; a constant double stands as its bits, a whole number as {wholeN}.
 
-{f}, {b} and {i} are the types of doubles, conditions and whole numbers, of vectors or single, {s} the end of
-the names of intrinsics; a constant double stands as its bits, a whole number as
-{wholeN}.
-"""
-
-TWO_SUM_ERROR = """
+; two_sum_error (Knuth)
 sum = fadd {f} {0}, {1}
 of_b = fsub {f} {sum}, {0}
 of_a = fsub {f} {sum}, {of_b}
 lost_a = fsub {f} {0}, {of_a}
 lost_b = fsub {f} {1}, {of_b}
 fadd {f} {lost_a}, {lost_b}
-"""  # Knuth
-TWO_PRODUCT_ERROR = """
+
+; two_product_error
 product = fmul {f} {0}, {1}
 negative = fneg {f} {product}
 call {f} @llvm.fma.{s}({f} {0}, {f} {1}, {f} {negative})
-"""
-ROUNDING = """
+
+; rounding
 size = call {f} @llvm.fabs.{s}({f} {0})
 fmul {f} {0x3CC0000000000000}, {size}
-"""
-POWER_OF_TWO = """
+
+; power_of_two (Rump)
 large = fcmp olt {f} {0}, {0x7BF0000000000000}
 below = select {b} {large}, {f} {0}, {f} {0x7BF0000000000000}
 small = fcmp ogt {f} {below}, {0x03F0000000000000}
@@ -32,8 +30,8 @@ sum = fadd {f} {wide}, {size}
 step = fsub {f} {sum}, {wide}
 some = fcmp ogt {f} {step}, {0x0000000000000000}
 select {b} {some}, {f} {step}, {f} {size}
-"""  # Rump
-HYPOT = """
+
+; hypot
 x = call {f} @llvm.fabs.{s}({f} {0})
 y = call {f} @llvm.fabs.{s}({f} {1})
 less = fcmp olt {f} {x}, {y}
@@ -50,19 +48,27 @@ size = select {b} {some}, {f} {product}, {f} {both}
 nothing = fsub {f} {most}, {most}
 infinite = fcmp une {f} {nothing}, {0x0000000000000000}
 select {b} {infinite}, {f} {both}, {f} {size}
-"""
-# Quarter turns: beyond 2^52 the last bits of a double are those of the whole number added to it.
-_ROTATED = """
+
+; rotated_sin: beyond 2^52 the last bits of a double are those of the whole number added to it
 shifted = fadd {f} {2}, {0x4338000000000000}
 turns = bitcast {f} {shifted} to {i}
 odd = trunc {i} {turns} to {b}
-value = select {b} {odd}, {f} {ODD}, {f} {EVEN}
+value = select {b} {odd}, {f} {1}, {f} {0}
 bits = bitcast {f} {value} to {i}
-next = add {i} {turns}, {ADDED}
+next = add {i} {turns}, {whole0}
 half = lshr {i} {next}, {whole1}
 sign = shl {i} {half}, {whole63}
 signed = xor {i} {bits}, {sign}
 bitcast {i} {signed} to {f}
-"""
-ROTATED_SIN = _ROTATED.replace("{ODD}", "{1}").replace("{EVEN}", "{0}").replace("{ADDED}", "{whole0}")
-ROTATED_COS = _ROTATED.replace("{ODD}", "{0}").replace("{EVEN}", "{1}").replace("{ADDED}", "{whole1}")
+
+; rotated_cos
+shifted = fadd {f} {2}, {0x4338000000000000}
+turns = bitcast {f} {shifted} to {i}
+odd = trunc {i} {turns} to {b}
+value = select {b} {odd}, {f} {0}, {f} {1}
+bits = bitcast {f} {value} to {i}
+next = add {i} {turns}, {whole1}
+half = lshr {i} {next}, {whole1}
+sign = shl {i} {half}, {whole63}
+signed = xor {i} {bits}, {sign}
+bitcast {i} {signed} to {f}
