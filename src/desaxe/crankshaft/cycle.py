@@ -14,7 +14,7 @@ from ..mechanism.names import parts
 from ..mechanism.read import read
 from ..support.computed import computed_once
 from ..support.panels import Array
-from .sums import STATE, SliderSums, indexed
+from .sums import STATE, SliderSums, indexed, state_of
 
 NEAR = 1e-9  # rad: an angle that is an edge
 SAMPLES = 64  # of a turn, for the size of what a slider adds
@@ -29,14 +29,11 @@ class ShaftCycle(Cycle):
         self.named = [name for name in others if name.endswith("]") or name == "I_shaft"]
         self.sliders = sliders.replaced(others)
         speed = {"omega0": state.get("omega", state.get("omega0"))}  # of conditions that depend on it
-        self.own = [
-            Turn(
-                caller,
-                {**speed, **{n: v for n, v in inputs.items() if n != "branch"}},
-                inputs.get("branch", 1),
-            )
+        here = (
+            {**speed, **{n: v for n, v in inputs.items() if v is not None}}
             for inputs in self.sliders.inputs_of_each()
-        ]
+        )
+        self.own = [Turn(caller, own, own.pop("branch", 1)) for own in here]
         backwards = state.get("omega0", state.get("omega", 1.0)) < 0.0
         turns = lcm(*(own.turns for own in self.own))
         super().__init__({**state, "sliders": self.sliders}, {}, 1, turns, backwards)
@@ -82,14 +79,12 @@ class ShaftCycle(Cycle):
 
     def _motion(self, other: Mapping[str, Any]) -> Motion:
         """The speed and acceleration of the shaft under its law, or as they are given."""
-        known = {**self.numbers, **other}
-        alpha = known.get("alpha") or 0.0
-        start = known.get("omega", known.get("omega0")) or 0.0
+        known = {n: v for n, v in {**self.numbers, **other}.items() if n in STATE}
 
         def motion(theta: Array) -> dict[str, Array]:
-            square = start**2 + (0.0 if "omega" in known else 2.0 * alpha * theta)
-            speed = np.copysign(np.sqrt(np.maximum(square, 0.0)), start)
-            return {"omega": np.broadcast_to(speed, theta.shape), "alpha": np.full(theta.shape, alpha)}
+            state = state_of({**known, "theta": theta})
+            omega = 0.0 if state.omega is None else state.omega
+            return {n: np.broadcast_to(v, theta.shape) for n, v in (("omega", omega), ("alpha", state.alpha))}
 
         return motion
 
@@ -115,10 +110,6 @@ class ShaftTurn(Turn, ShaftCycle):
 
     def __init__(self, caller: str, sliders: SliderSums, inputs: Mapping[str, Any], ends: Any = None) -> None:
         ShaftCycle.__init__(self, caller, sliders, inputs, ends)
-
-    def moves(self, names: Sequence[str], angles: Array) -> dict[str, Array]:
-        """By how much each input moves angles of jumps, in an array of any shape."""
-        return ShaftCycle.moves(self, names, angles)
 
     @computed_once
     def moving_parameters(self) -> tuple[str, ...]:

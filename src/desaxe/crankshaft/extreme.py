@@ -1,12 +1,10 @@
-"""The extreme value of a sum over sliders, its angle and its exact gradient."""
+"""The extreme values of a sum over sliders, their angles and exact gradients."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from ..design.turn.turn import NoCycleError
-from ..mechanism.status import PeakStatus
 from ..support.panels import Array, Panels, resolved
 from .cycle import ShaftTurn
 
@@ -15,43 +13,12 @@ Values = Callable[[Sequence[str], Array, Any], dict[str, Array]]
 JUMP = 1e-9  # of the largest value: a change at one angle that is a jump
 
 
-def extreme_of(turn: ShaftTurn, name: str, kind: str) -> dict[str, Any]:
-    """Value, angle, side of a jump, gradient and status of one crankshaft."""
-    by = turn.slopes_of(name)
-    missing = {"value": np.nan, "theta": np.nan, "side": 0, "gradient": dict.fromkeys(by, np.nan)}
-    if turn.margin < 0.0:
-        return {**missing, "status": int(PeakStatus.CANNOT_BE_ASSEMBLED)}
-    try:
-        panels = turn.panels([name])
-    except NoCycleError as error:
-        return {**missing, "status": error.status}
-    tops = [panels.extreme(panels.values[name], sign) for sign in SIGNS[kind]]
-    top, theta, inside = max(tops, key=lambda one: abs(one[0]))
-    side, slopes = 0, {}
-    nothing = abs(top) <= turn.floor(name)
-    if nothing:  # the sliders cancel, at every angle
-        top, theta, inside = 0.0, turn.ends[0], True
-    if inside:
-        slopes = {n: values[0] for n, values in turn.values([*by.values()], np.array([theta])).items()}
-        gradient = {p: slopes[n] for p, n in by.items()}
-        if nothing:
-            gradient = {p: s if abs(s) > turn.floor(by[p]) else 0.0 for p, s in gradient.items()}
-    else:
-        side, gradient = _at_edge(turn, name, panels, float(theta), top, by)
-    sign = np.sign(top) if kind == "absmax" else 1.0
-    value = abs(top) if kind == "absmax" else top
-    return {
-        "value": float(value), "theta": float(theta), "side": side,
-        "gradient": {p: float(sign * slope) + 0.0 for p, slope in gradient.items()}, "status": 0,
-    }  # fmt: skip
-
-
 def extremes_of(
     turn_of: Callable[[int], ShaftTurn], values: Values, edges: Array, floor: Array, name: str, kind: str
 ) -> dict[str, Any]:
-    """Values, angles, sides, gradients and status of many crankshafts at once, as arrays.
+    """Values, angles, sides of a jump, gradients and status of crankshafts, as arrays.
 
-    turn_of  the turn of one of them, for extremes between panels and angles without a value
+    turn_of  the turn of one of them, for extremes between panels and sums that cancel
     values   quantities at angles of the crankshafts `row`
     edges    a row for each, NaN in empty places
     floor    the magnitude of each that is rounding
@@ -63,27 +30,32 @@ def extremes_of(
     tops = [panels.extreme(nodes, sign) for sign in SIGNS[kind]]
     which = np.argmax([np.abs(one[0]) for one in tops], axis=0)
     top, theta, inside = (np.array(part)[which, row] for part in zip(*tops, strict=True))
+    nothing = known & (np.abs(top) <= floor)  # the sliders cancel, at every angle
+    top, theta = (np.where(nothing, least, part) for part, least in ((top, 0.0), (theta, panels.edges[:, 0])))
     by = turn_of(0).slopes_of(name)
-    slopes = values([*by.values()], theta, row)
-    sign = np.sign(top) if kind == "absmax" else np.ones(top.shape)
-    found: dict[str, Any] = {
-        "value": np.abs(top) if kind == "absmax" else top.copy(), "theta": theta.copy(),
-        "side": np.zeros(row.size, np.int8), "status": np.zeros(row.size, np.int8),
-    }  # fmt: skip
-    gradient = {p: sign * slopes[n] for p, n in by.items()}
-    for k in np.flatnonzero(~(known & inside & (np.abs(top) > floor))).tolist():
-        one = extreme_of(turn_of(k), name, kind)
-        for key, column in found.items():
-            column[k] = one[key]
-        for p, column in gradient.items():
-            column[k] = one["gradient"][p]
-    status = found.pop("status")
-    return {**found, "gradient": gradient, "status": status}
+    slopes = {n: np.array(slope) for n, slope in values([*by.values()], theta, row).items()}
+    side, status = np.zeros(row.size, np.int8), np.zeros(row.size, np.int8)
+    for k in np.flatnonzero(~known | nothing | ~inside).tolist():
+        if not known[k]:
+            top[k] = theta[k] = np.nan
+            status[k] = values(["status"], panels.x[k].ravel(), k)["status"].max()
+            own = dict.fromkeys(slopes, np.nan)
+        elif nothing[k]:
+            own = {n: s[k] if abs(s[k]) > turn_of(k).floor(n) else 0.0 for n, s in slopes.items()}
+        else:
+            shaft = Panels(panels.edges[k], {name: nodes[k]})
+            side[k], own = _at_edge(turn_of(k), name, shaft, theta[k], top[k], by)
+        for n, slope in own.items():
+            slopes[n][k] = slope
+    sign = np.sign(top) if kind == "absmax" else 1.0
+    gradient = {p: sign * slopes[n] + 0.0 for p, n in by.items()}
+    value = np.abs(top) if kind == "absmax" else top
+    return {"value": value, "theta": theta, "side": side, "gradient": gradient, "status": status}
 
 
 def _at_edge(
     turn: ShaftTurn, name: str, panels: Panels, theta: float, top: float, by: dict[str, str]
-) -> tuple[int, dict[str, Array]]:
+) -> tuple[int, dict[str, Any]]:
     """The side and the derivatives of a value between two panels, which moves with their edge."""
     edge = int(np.argmin(np.abs(panels.edges - theta)))
     ends = panels.ends(panels.values[name])
@@ -97,7 +69,5 @@ def _at_edge(
     )
     slopes = {n: here.ends(v)[-1 if end else 0, end] for n, v in here.values.items()}
     moves = turn.moves([name], np.array([theta]))
-    shifts = {p: moves[p][0] if p in moves else 0.0 for p in by}
-    return (2 * (1 - end) - 1 if jumps else 0), {
-        p: slopes[n] + slopes[along] * shifts[p] for p, n in by.items()
-    }
+    own = {n: slopes[n] + slopes[along] * moves[p][0] if p in moves else slopes[n] for p, n in by.items()}
+    return (2 * (1 - end) - 1 if jumps else 0), own

@@ -19,7 +19,7 @@ from ..simulation.request import Ask, in_time
 from ..simulation.result import Simulation
 from ..support.answer import Answer
 from .cycle import ShaftTurn
-from .extreme import extreme_of, extremes_of
+from .extreme import extremes_of
 from .motion import ShaftModel
 from .sums import SliderSums, indexed, number
 
@@ -59,8 +59,6 @@ class Sliders(SliderSums):
             size = int(np.prod(shape))
             if not size:
                 raise ValueError("peak: an empty array; expected at least one crankshaft")
-            if not shape:
-                return Answer(extreme_of(turn_of(0), name, kind), partial(units_of_extreme, name), PeakStatus)
             turn = turn_of(0)
             first = np.array(turn.ends) if self.smooth else None
             each = [turn_of(k).edges([name]) if first is None else first for k in range(size)]
@@ -69,8 +67,8 @@ class Sliders(SliderSums):
                 edges[k, : len(own)] = own
             columns = {n: r[:, None] for n, r in rows.items()}
             floor = self.floor(name, {**given, **columns, "theta": turn.samples})
-            found = _shaped(extremes_of(turn_of, values, edges, floor, name, kind), shape)
-            return Answer(found, partial(units_of_extreme, name), PeakStatus)
+            found = extremes_of(turn_of, values, edges, floor, name, kind)
+            return Answer(_shaped(found, shape), partial(units_of_extreme, name), PeakStatus)
 
     def motion(self, ask: Ask, given: Mapping[str, Any], starts: Mapping[str, Any], times: Any) -> Simulation:
         """`desaxe.simulate` of the shaft."""
@@ -130,7 +128,8 @@ def described(name: str) -> dict[str, Any]:
     return {"units": str(unit_of(name)), "long_name": meaning}
 
 
-def _shaped(found: dict[str, Any], shape: tuple[int, ...]) -> dict[str, Any]:
-    """Results of several designs in their shape."""
-    gradient = {p: slope.reshape(shape) for p, slope in found["gradient"].items()}
-    return {n: gradient if n == "gradient" else column.reshape(shape) for n, column in found.items()}
+def _shaped(found: Any, shape: tuple[int, ...]) -> Any:
+    """Results of several designs in their shape; numbers of a single one."""
+    if isinstance(found, dict):
+        return {n: _shaped(column, shape) for n, column in found.items()}
+    return found.reshape(shape) if shape else found.item()
