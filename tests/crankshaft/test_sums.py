@@ -156,6 +156,7 @@ def pair(machine, call="evaluate", name="T_in", **inputs):
         (lambda m: dx.Crankshaft({"AB": 1.0}, phase=[0, 1]), "expected a Machine"),
         (lambda m: pair(m, name="a_C", theta=1.0), r"a_C\[0\] to a_C\[1\]"),
         (lambda m: pair(m, name="a_C[2]", theta=1.0), "sliders 0 to 1"),
+        (lambda m: pair(m, name="C_inertia_Y_wrt_AB", theta=1.0), "C_inertia_Y: .* spacing= or position="),
         (lambda m: pair(m, name="M_piston", theta=1.0), "unknown quantity 'M_piston'"),
         (lambda m: pair(m, "peak", **{"AB[3]": 1.0}), "sliders 0 to 1"),
         (lambda m: pair(m, "peak", speed=1.0), "no input 'speed'"),

@@ -46,13 +46,13 @@ TINY = 1e-150  # rad/s, in place of rest: slopes by omega^2 stay finite
 
 
 class ShaftSlider(NamedTuple):
-    """A slider: its inputs in SI units, its angles [rad] and its distance from the shaft's middle [m]."""
+    """A slider: its inputs in SI units, its angles [rad] and its distance from the middle [m], None if unknown."""
 
     inputs: Mapping[str, Any]
     phase: Any = 0.0
     bank: Any = 0.0
     firing: Any = 0.0
-    position: Any = 0.0
+    position: Any = None
 
 
 class Share(NamedTuple):
@@ -296,6 +296,8 @@ class SliderSums:
         if index is not None:
             self._check(base, index)
         if name in COUPLES:  # with an index: what a slider adds to it
+            if any(member.position is None for member in self.members):
+                raise ValueError(f"{base}: of sliders along a shaft: give Crankshaft spacing= or position=")
             return {
                 (k, q): share.times(self.members[k].position)
                 for (k, q), share in self._quantity(COUPLES[name]).items()

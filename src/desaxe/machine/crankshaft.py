@@ -44,7 +44,7 @@ class Crankshaft(Machine):
     bank      angle of each slider's axis, positive like theta, in V engines; or one for all
     firing    where the cycle of each slider's load begins: phase + bank, plus whole turns in a four-stroke
               engine; phase + bank if not given
-    spacing   of neighbours along the shaft, or `position`: of each, for the couples
+    spacing   of neighbours along the shaft, or `position`: of each; the couples need one of them
     I_shaft   moment of inertia of shaft and flywheel, beside those of the sliders' cranks
     units     as in `Machine`; by default those of the first machine, in which phases are as well
 
@@ -181,7 +181,7 @@ class Crankshaft(Machine):
 
     def _key(self) -> frozenset[Any]:
         sliders = self["sliders"]
-        angles = tuple(tuple(map(float, member[1:])) for member in sliders.members)
+        angles = tuple(tuple(member[1:]) for member in sliders.members)
         speeds = tuple((name, self.get(name)) for name in STATE)
         return frozenset([self.members, angles, speeds, sliders.I_shaft])
 
@@ -252,10 +252,10 @@ def _places(count: int, spacing: Any, position: Any, system: UnitSystem) -> Any:
     """The distances of the sliders from the middle of the shaft."""
     if spacing is not None and position is not None:
         raise ValueError("Crankshaft: give spacing=, or position= of each slider, not both")
+    if position is None and spacing is None:
+        return [0.0 if count == 1 else None] * count
     if position is None:
-        step = (
-            0.0 if spacing is None else read(Input("spacing", "m", ""), spacing, "Crankshaft", system=system)
-        )
+        step = read(Input("spacing", "m", ""), spacing, "Crankshaft", system=system)
         return step * (np.arange(count) - 0.5 * (count - 1))
     places = _row("position", position, count)
     return places - 0.5 * (places.min() + places.max())

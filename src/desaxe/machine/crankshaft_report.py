@@ -35,10 +35,13 @@ def _unit(shaft: Any, name: str) -> str:
 
 def _sliders(shaft: Any) -> Section:
     """The angles of the sliders, and the inputs of each."""
-    heads = ("phase", "bank", "firing", "position")
+    heads: tuple[str, ...] = ("phase", "bank", "firing", "position")
+    members = shaft["sliders"].members
+    if members[0].position is None:
+        heads = heads[:-1]
     rows = [
         (str(k), *(cell(float(shaft.units.of(n).shown(getattr(member, n)))) for n in heads))
-        for k, member in enumerate(shaft["sliders"].members)
+        for k, member in enumerate(members)
     ]
     angles = TextTable(("slider", *heads), rows, ("", *(_unit(shaft, n) for n in heads)))
     alike = [one for k, one in enumerate(shaft.members) if one not in shaft.members[:k]]
@@ -66,14 +69,16 @@ def _peaks(shaft: Any, names: Sequence[str]) -> Section:
 
 def _balance(shaft: Any) -> Section:
     """The harmonics of inertia forces and couples, and the weights that balance the first two orders."""
-    series = {name: shaft.harmonics(name, orders=ORDERS) for name in BALANCE}
-    first = series[BALANCE[0]]["order"]
+    placed = shaft["sliders"].members[0].position is not None
+    balance = BALANCE if placed else BALANCE[:3]
+    series = {name: shaft.harmonics(name, orders=ORDERS) for name in balance}
+    first = series[balance[0]]["order"]
     rows = [
         (f"{order:g}", *(cell(found["amplitude"][k]) for found in series.values()))
         for k, order in enumerate(first)
         if order == int(order)
     ]
-    orders = TextTable(("order", *BALANCE), rows, ("", *(_unit(shaft, name) for name in BALANCE)))
+    orders = TextTable(("order", *balance), rows, ("", *(_unit(shaft, name) for name in balance)))
     weight = shaft.counterweight()
     parts = {"on the shaft": weight, "turning against it": weight["counter_rotating"]}
     for way, part in weight["second_order"].items():
