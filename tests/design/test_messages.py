@@ -157,7 +157,7 @@ TABLE = [  # a call and what is good for it; what is changed, the error and its 
         ({"m_slidr": 1.0}, TypeError, "m_slider"),
         ({"F_Y": dx.over_theta([0, 1, 2], [1, 2, 1], period=5.0)}, ValueError, "turns"),
     ]),
-    ((dx.over_omega, [0, 1], [1]), {}, [({}, ValueError, "2 speeds and 1 torques")]),
+    ((dx.over_omega, [0, 1], [1]), {}, [({}, ValueError, "2 speeds and 1 values")]),
     ((dx.over_omega, [1, 0], [1, 2]), {}, [({}, ValueError, "must ascend")]),
     ((dx.over_omega, [0, 1], [1, 2], "cubic"), {}, [({}, ValueError, "kind")]),
     ((dx.over_omega, [1], [1]), {}, [({}, ValueError, "at least two")]),

@@ -79,7 +79,7 @@ def test_other_functions_are_refused(load, message):
     [
         (lambda: dx.over_Y(lambda a, b: a), "over_Y: a function of one argument is expected.* a, b"),
         (lambda: dx.over_V([1, 0], [1, 2]), "over_V: the speeds must ascend, but 0 follows 1"),
-        (lambda: dx.over_V([0, 1], ["1 Pa", "2 Pa"]), "N"),
+        (lambda: dx.over_V([0, 1], ["1 Pa", "2 Pa"]), "it must be a quantity in N"),
         (lambda: dx.over_V([0, 1]), "over_V: forces is missing"),
         (lambda: dx.spring(-1.0, 0.1), "stiffness = -1.0: it must be a stiffness >= 0"),
         (lambda: dx.spring("3 N", 0.1), "stiffness"),
@@ -176,7 +176,7 @@ def test_the_units_of_a_machine():
             assert found == pytest.approx(press.evaluate("T_in", theta=60, F_Y=number), rel=1e-12)
             held = press.replace(F_Y=load).evaluate("T_in", theta=60)
             assert held == pytest.approx(found, rel=1e-12)
-    assert str(press.spring(4, free=120)) == "<spring: 4 N/mm, free at 120 mm>"
+    assert str(press.spring(4, free=120)) == "<spring: stiffness = 4 N/mm, free = 120 mm>"
     assert press.damper(0.2)(1000.0) == pytest.approx(-200.0)
     turning = press.simulate(torque=lambda omega: 40 - 0.1 * omega, t_end=0.5, I_crank="0.05 kg m^2")
     right = dx.simulate(

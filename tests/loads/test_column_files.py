@@ -109,9 +109,9 @@ REFUSED = {
     ",theta,F\n0,0,0\n1,90,-4\n": "the first column has no heading, as the index of a frame",
     "theta;F\n\n": "no line begins with two numbers",
     "": "no line begins with two numbers",
-    "theta [dge];F [N]\n0;0\n90;5\n": "theta in 'dge': unknown unit",
-    "theta [mm];F [N]\n0;0\n90;5\n": "theta in 'mm': it must be a quantity in rad",
-    "theta [deg];T [Nm]\n0;0\n90;5\n": "value in 'Nm': unknown unit; did you mean N m",
+    "theta [dge];F [N]\n0;0\n90;5\n": "over_theta: angles in 'dge': unknown unit",
+    "theta [mm];F [N]\n0;0\n90;5\n": "over_theta: angles in 'mm': it must be a quantity in rad",
+    "theta [deg];T [Nm]\n0;0\n90;5\n": "over_theta: values in 'Nm': unknown unit; did you mean N m",
     "theta [deg];F\n(rad);(N)\n0;0\n1;5\n": "theta = 'deg', but its heading is '\\(rad\\)'",
 }
 

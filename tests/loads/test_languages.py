@@ -145,8 +145,6 @@ def test_extended_is_in_c_too(tmp_path):
 def test_what_a_module_cannot_hold_is_refused_by_name(tmp_path):
     with pytest.raises(SceneError, match=r"loads.F_Y = .*a compiled module holds tables"):
         dx.compile(scene(dx.over_theta(np.sin, np.cos)), tmp_path / "press", to="c")
-    with pytest.raises(TypeError, match="is no table"):
-        dx.over_theta(np.sin, np.cos).arrays()
 
 
 def test_a_scene_without_open_inputs(tmp_path):

@@ -222,5 +222,5 @@ def test_what_is_refused(make, message):
 def test_a_file_of_pressures_needs_a_piston(tmp_path):
     path = tmp_path / "trace.csv"
     path.write_text("theta [deg],p [bar]\n0,1\n360,2\n", encoding="utf-8")
-    with pytest.raises(ValueError, match=r"trace.csv: value: a pressure needs"):
+    with pytest.raises(ValueError, match=r"trace.csv: over_theta: values: a pressure needs"):
         dx.over_theta.read(path, period="720 deg")

@@ -179,5 +179,5 @@ def test_a_heading_gives_the_units_of_a_file(tmp_path):
 
 
 def test_positions_that_are_almost_surely_millimetres():
-    with pytest.warns(dx.UnitWarning, match='write "475 mm"'):
+    with pytest.warns(dx.UnitWarning, match='write Y = "475 mm"'):
         dx.over_Y([225, 475], [0, -1])

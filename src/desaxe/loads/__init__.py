@@ -24,6 +24,7 @@ angles     crank angles of slider positions and dead centres
 resolve    loads as numbers at each point, and total derivatives
 """
 
+from . import arithmetic as arithmetic  # which gives loads their operators
 from .elements import damper, over_V, spring
 from .load import Load, LoadWarning
 from .tabulated import over_stroke, over_theta, over_Y

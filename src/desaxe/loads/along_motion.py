@@ -4,123 +4,41 @@ A load of this kind tells its value and its derivative by each column that it ne
 rest follows: dF/dp is the sum of dF/dcolumn dcolumn/dp.
 """
 
-from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any
 
-from ..mechanism.catalogue import has
-from ..mechanism.inputs import Input
-from ..mechanism.names import LENGTHS
-from ..mechanism.quantity_units import SI, si_unit
-from ..mechanism.read import in_si
 from ..support.computed import computed_once
-from ..support.forks import IMPORTS
-from ..support.shown import with_unit
-from ..units.system import Conversion
-from .function import called
-from .load import POSITION, Load, OverTheta, OverY
-from .stroke import OverStroke
-from .table import Arrays, Table, arrays_of
+from .function import called, name_of
+from .load import Load, Partials, sign_of
+from .table import Table
 
 COLUMNS = ("theta", "omega", "Y", "s", "V_C")  # that functions take, besides t
 SPEEDS = ("omega0", "omega", "alpha")  # inputs that say how fast the crank turns
-MOVING = ("omega", "V_C")  # columns that depend on it
-BY: dict[str, tuple[str, ...]] = {  # the parameters that a column depends on
-    "theta": ("theta",),
-    "omega": ("theta", "omega0", "alpha", "omega"),
-    "V_C": ("theta", *LENGTHS, "omega0", "alpha", "omega"),
-}
 # Central differences of order 8: (distance in steps, weight).
 STENCIL = ((1, 4 / 5), (2, -1 / 5), (3, 4 / 105), (4, -1 / 280))
 STEP = 2.0**-6  # of the scale of a column
 SAMPLES = 97  # by which functions are told apart
 
 
-class Partials(NamedTuple):
-    """The value of a load and its derivatives by the columns of the motion."""
-
-    value: Any
-    slopes: dict[str, Any]
-
-
 class OfMotion(Load):
     """A load over columns of the motion: theta, omega, Y, s, V_C, the position of a dead centre."""
 
     over = "the motion"
-    needs: tuple[str, ...] = ()
-
-    @property
-    def parameters(self) -> tuple[str, ...]:  # type: ignore[override]
-        """The parameters that the columns depend on."""
-        return tuple(dict.fromkeys(p for c in self.needs for p in BY.get(c, ("theta", *LENGTHS))))
-
-    @property
-    def variant(self) -> tuple[Any, ...]:
-        """The key of the load in a request."""
-        return (*super().variant, self.needs, self.has_ways)
-
-    @property
-    def follows_speed(self) -> bool:
-        """True where the load depends on how fast the crank turns."""
-        return not set(MOVING).isdisjoint(self.needs)
-
-    @property
-    def speeds(self) -> tuple[float, ...]:
-        """The slider's speeds at which the load has a kink."""
-        return ()
-
-    @property
-    def has_ways(self) -> bool:
-        """True where the direction of the slider matters, `way` of the columns."""
-        return False
-
-    @abstractmethod
-    def partials(self, now: Mapping[str, Any]) -> Partials:
-        """The value and the derivatives at columns of the motion."""
-
-    def by(self, now: Mapping[str, Any]) -> dict[str, Any]:
-        """The derivatives of the load by its numbers."""
-        return {}
-
-    def by_at(
-        self, values: Callable[[list[str]], Mapping[str, Any]], theta: Any, omega: Any
-    ) -> dict[str, Any]:
-        """The derivatives by its numbers along a motion; values: of names there, by name."""
-        motion = values([name for name in self.motion((), True) if name != "omega"])
-        way = motion.get("V_C", motion.get("Y_wrt_theta"))
-        return self.by({**motion, "theta": theta, "omega": omega, "way": way})
-
-    def motion(self, parameters: Iterable[str], state: bool) -> tuple[str, ...]:
-        """The names of the motion from which the load and its derivatives by these parameters follow.
-
-        state  whether omega is an input
-        """
-        names = list(POSITION) if self.has_ways else []
-        for column in self.needs:
-            if column == "theta":
-                continue
-            by = () if column == "omega" and state else parameters
-            names += [column, *(n for p in by if has(n := f"{column}_wrt_{p}", state))]
-        return tuple(dict.fromkeys(names))
 
     def total(self, slopes: Mapping[str, Any], parameter: str, motion: Mapping[str, Any]) -> Any:
         """The derivative by a parameter, from those by the columns."""
         moved = {c: 1.0 if c == parameter else motion.get(f"{c}_wrt_{parameter}", 0.0) for c in slopes}
         return sum(slope * moved[column] for column, slope in slopes.items())
 
-    def __call__(self, *columns: Any, **named: Any) -> Any:
+    def __call__(self, *columns: Any, way: Any = 1.0, **named: Any) -> Any:
         """The load at columns, by name or in the order of `needs`, in the units of the maker's machine."""
-        given = dict(zip(self.needs, columns, strict=False)) | named
-        missing = [name for name in self.needs if name not in given]
-        if missing or len(columns) > len(self.needs):
+        passed = dict(zip(self.needs, columns, strict=False)) | named
+        if len(columns) > len(self.needs) or not passed.keys() >= {*self.needs}:
             raise TypeError(f"{self!r} is called with {', '.join(self.needs)}")
-        units = self.shown_in
-        for name in self.needs:
-            given[name] = in_si(Input(name, si_unit(name), ""), given[name], units)
-        now = {"way": 1.0, **{n: _plain(x) for n, x in given.items()}}
-        value = self.partials(now).value
-        return value if units is None else self.values_in(units).shown(value)
+        return self._in_its_units(
+            lambda *si: self.partials({"way": way, **dict(zip(passed, si, strict=True))}).value, passed
+        )
 
 
 @dataclass(frozen=True, repr=False)
@@ -148,7 +66,7 @@ class FunctionOfMotion(OfMotion):
         return (*self.arguments, self.centre) if self.centre else self.arguments
 
     @property
-    def has_slope(self) -> bool:
+    def has_slope(self) -> bool:  # type: ignore[override]
         """True where the derivatives are known."""
         return self.derivatives is not None
 
@@ -157,7 +75,7 @@ class FunctionOfMotion(OfMotion):
         columns, sign = {name: now[name] for name in self.arguments}, None
         if self.centre:
             away = now["Y"] - now[self.centre]
-            columns["Y"], sign = abs(away), _sign(away)
+            columns["Y"], sign = abs(away), sign_of(away)
         value = called(self.function, columns, "the load")
         slopes = {
             name: called(derivative, columns, "the load's derivative")
@@ -179,19 +97,17 @@ class FunctionOfMotion(OfMotion):
         return replace(self, derivatives=by)
 
     def _content(self) -> str:
-        name = getattr(self.function, "__qualname__", type(self.function).__name__)
         try:
             at = [0.37 + 0.013 * k for k in range(SAMPLES)]
             values = [self.function(*(x * (1.0 + n) for n in range(len(self.arguments)))) for x in at]
         except Exception:  # outside of its domain: the name is all that is known
             values = []
-        return f"{name} {self.arguments} {self.centre} {values}"
+        return f"{name_of(self.function)} {self.arguments} {self.centre} {values}"
 
     def told(self, conversion: Any = None) -> str:
         """The function's name in a line."""
-        name = getattr(self.function, "__name__", type(self.function).__name__)
         over = f"the distance from {self.centre}" if self.centre else self.over
-        return f"<load over {over}: the function {name}>"
+        return f"<load over {over}: the function {name_of(self.function)}>"
 
 
 @dataclass(frozen=True)
@@ -213,8 +129,29 @@ class Difference:
         return total / self.step
 
 
+class OverColumn(OfMotion):
+    """A load by one table over one column, whose values are held, or whose lines go on, beyond its ends."""
+
+    table: Table
+
+    @property
+    def over(self) -> str:  # type: ignore[override]
+        """The column."""
+        return self.needs[0]
+
+    @property
+    def speeds(self) -> tuple[float, ...]:  # type: ignore[override]
+        """The speeds of a table in which pieces differ."""
+        return self.table.knots if self.needs == ("V_C",) and len({*self.table.rows}) > 1 else ()
+
+    def partials(self, now: Mapping[str, Any]) -> Partials:
+        """The table at the column."""
+        value, slope = self.table.both(now[self.over])
+        return Partials(value, {self.over: slope})
+
+
 @dataclass(frozen=True, repr=False)
-class OverSpeed(OfMotion):
+class OverSpeed(OverColumn):
     """A table over the slider's speed, held beyond its ends."""
 
     table: Table
@@ -223,118 +160,8 @@ class OverSpeed(OfMotion):
     plain: tuple[str, ...] = field(default=(), compare=False)
 
     call = "over_V"
-    over = "V_C"
     needs = ("V_C",)
-
-    @property
-    def tables(self) -> tuple[Table, ...]:  # type: ignore[override]
-        """The table."""
-        return (self.table,)
-
-    def arrays(self) -> Arrays:
-        """The knots and coefficients of the table."""
-        return arrays_of(self.table)
-
-    @property
-    def speeds(self) -> tuple[float, ...]:
-        """The speeds of the table."""
-        return self.table.knots
-
-    def partials(self, now: Mapping[str, Any]) -> Partials:
-        """The table at the speed."""
-        value, slope = self.table.both(now["V_C"])
-        return Partials(value, {"V_C": slope})
-
-    def _content(self) -> str:
-        return f"over V_C {self.table!r}"
-
-    def told(self, conversion: Any = None) -> str:
-        """The table in a line."""
-        return f"<load over V_C: {len(self.table.knots)} points, {self.kind}>"
-
-
-@dataclass(frozen=True, repr=False)
-class Spring(OfMotion):
-    """A spring between slider and frame: F = -stiffness (Y - free)."""
-
-    stiffness: float
-    free: float
-    plain: tuple[str, ...] = field(default=(), compare=False)
-
-    call = "spring"
-    over = "Y"
-    needs = ("Y",)
-    unit = "N"
-
-    @property
-    def numbers(self) -> Mapping[str, float]:  # type: ignore[override]
-        """The stiffness and the position of the slider at which it is free."""
-        return {"stiffness": self.stiffness, "free": self.free}
-
-    def partials(self, now: Mapping[str, Any]) -> Partials:
-        """The force, and its derivative by Y."""
-        stretch = now["Y"] - self.free
-        return Partials(-self.stiffness * stretch, {"Y": 0.0 * stretch - self.stiffness})
-
-    def by(self, now: Mapping[str, Any]) -> dict[str, Any]:
-        """The derivatives by stiffness and free position."""
-        stretch = now["Y"] - self.free
-        return {"stiffness": -stretch, "free": 0.0 * stretch + self.stiffness}
-
-    def _content(self) -> str:
-        return f"spring {self.stiffness!r} {self.free!r}"
-
-    def told(self, conversion: Any = None) -> str:
-        """The spring in a line."""
-        units = self.shown_in or SI
-        stiffness, free = (_told(x, units.of(f"F_Y.{name}")) for name, x in self.numbers.items())
-        return f"<spring: {stiffness}, free at {free}>"
-
-
-@dataclass(frozen=True, repr=False)
-class Damper(OfMotion):
-    """A damper between slider and frame: F = -linear V_C - quadratic |V_C| V_C."""
-
-    linear: float
-    quadratic: float
-    plain: tuple[str, ...] = field(default=(), compare=False)
-
-    call = "damper"
-    over = "V_C"
-    needs = ("V_C",)
-    unit = "N"
-
-    @property
-    def numbers(self) -> Mapping[str, float]:  # type: ignore[override]
-        """Both coefficients."""
-        return {"linear": self.linear, "quadratic": self.quadratic}
-
-    @property
-    def speeds(self) -> tuple[float, ...]:
-        """The speed 0 of a quadratic damper, whose slope has a kink there."""
-        return (0.0,) if self.quadratic else ()
-
-    def partials(self, now: Mapping[str, Any]) -> Partials:
-        """The force, and its derivative by V_C."""
-        V = now["V_C"]
-        size = abs(V)
-        return Partials(
-            -(self.linear + self.quadratic * size) * V, {"V_C": -self.linear - 2.0 * self.quadratic * size}
-        )
-
-    def by(self, now: Mapping[str, Any]) -> dict[str, Any]:
-        """The derivatives by both coefficients."""
-        V = now["V_C"]
-        return {"linear": -V, "quadratic": -abs(V) * V}
-
-    def _content(self) -> str:
-        return f"damper {self.linear!r} {self.quadratic!r}"
-
-    def told(self, conversion: Any = None) -> str:
-        """The damper in a line."""
-        units = self.shown_in or SI
-        parts = [_told(x, units.of(f"F_Y.{name}")) for name, x in self.numbers.items() if x]
-        return f"<damper: {' and '.join(parts) or 'none'}>"
+    curves = ("table",)
 
 
 @dataclass(frozen=True, repr=False)
@@ -347,7 +174,7 @@ class SumOfLoads(OfMotion):
     @computed_once
     def needs(self) -> tuple[str, ...]:
         """The columns of all members."""
-        return tuple(dict.fromkeys(column for _, load in self.terms for column in needs_of(load)))
+        return tuple(dict.fromkeys(column for _, load in self.terms for column in load.needs))
 
     @property
     def variant(self) -> tuple[Any, ...]:
@@ -365,19 +192,24 @@ class SumOfLoads(OfMotion):
         return next((load.unit for load in self.members if load.unit is not None), None)
 
     @property
-    def has_slope(self) -> bool:
+    def plain(self) -> tuple[str, ...]:  # type: ignore[override]
+        """What was given as plain numbers, of all."""
+        return tuple(dict.fromkeys(place for load in self.members for place in load.plain))
+
+    @property
+    def has_slope(self) -> bool:  # type: ignore[override]
         """True where the derivatives of all are known."""
         return all(load.has_slope for load in self.members)
 
     @property
-    def has_ways(self) -> bool:
+    def has_ways(self) -> bool:  # type: ignore[override]
         """True with a load over the slider's position."""
-        return any(isinstance(load, OverY) for load in self.members)
+        return any(load.has_ways for load in self.members)
 
     @property
-    def speeds(self) -> tuple[float, ...]:
+    def speeds(self) -> tuple[float, ...]:  # type: ignore[override]
         """The speeds of the members."""
-        return tuple(sorted({v for m in self.members if isinstance(m, OfMotion) for v in m.speeds}))
+        return tuple(sorted({v for m in self.members for v in m.speeds}))
 
     @computed_once
     def _named(self) -> dict[str, tuple[int, str]]:
@@ -399,7 +231,7 @@ class SumOfLoads(OfMotion):
         value: Any = self.constant
         slopes: dict[str, Any] = {}
         for factor, load in self.terms:
-            part = partials_of(load, now)
+            part = load.partials(now)
             value = value + factor * part.value
             for column, slope in part.slopes.items():
                 slopes[column] = slopes.get(column, 0.0) + factor * slope
@@ -407,7 +239,7 @@ class SumOfLoads(OfMotion):
 
     def by(self, now: Mapping[str, Any]) -> dict[str, Any]:
         """The derivatives by the numbers of all members."""
-        parts = [load.by(now) if isinstance(load, OfMotion) else {} for load in self.members]
+        parts = [load.by(now) for load in self.members]
         return {name: self.terms[k][0] * parts[k][own] for name, (k, own) in self._named.items()}
 
     def _content(self) -> str:
@@ -417,30 +249,6 @@ class SumOfLoads(OfMotion):
         """All members in a line."""
         parts = [("" if f == 1.0 else f"{f:g} ") + load.told(conversion)[1:-1] for f, load in self.terms]
         return f"<{' + '.join([*parts, *([f'{self.constant:g}'] if self.constant else [])])}>"
-
-
-def needs_of(load: Load) -> tuple[str, ...]:
-    """The columns of the motion that a load of any kind needs."""
-    if isinstance(load, OfMotion):
-        return load.needs
-    if isinstance(load, OverTheta):
-        return ("theta",)
-    return ("Y", load.centre) if load.centre else ("Y",)
-
-
-def partials_of(load: Load, now: Mapping[str, Any]) -> Partials:
-    """The value and derivatives of a load of any kind; `way` of the columns is the slider's direction."""
-    if isinstance(load, OfMotion):
-        return load.partials(now)
-    if isinstance(load, OverTheta):
-        value, slope = load.both(now["theta"])
-        return Partials(value, {} if slope is None else {"theta": slope})
-    assert isinstance(load, OverY)
-    value, slope = load.both(load.along(now), now["way"])
-    if not isinstance(load, OverStroke):
-        return Partials(value, {"Y": slope})
-    slope = slope * _sign(now["Y"] - now[load.centre])
-    return Partials(value, {"Y": slope, load.centre: -slope})
 
 
 def members_of(loads: Iterable[Load]) -> list[Load]:
@@ -454,7 +262,7 @@ def members_of(loads: Iterable[Load]) -> list[Load]:
 
 def speeds_of(loads: Iterable[Load]) -> list[float]:
     """The slider's speeds at which loads have kinks."""
-    return sorted({v for load in loads if isinstance(load, OfMotion) for v in load.speeds})
+    return sorted({v for load in loads for v in load.speeds})
 
 
 def with_derivatives(loads: Mapping[str, Load], inputs: Mapping[str, Any]) -> dict[str, Load]:
@@ -481,20 +289,3 @@ def _differentiated(load: Load, scales: Mapping[str, float]) -> Load:
 
 def _flat(value: Any) -> list[float]:
     return value.reshape(-1).tolist() if hasattr(value, "reshape") else [float(value or 0.0)]
-
-
-def _told(number: float, unit: Conversion) -> str:
-    return with_unit(f"{unit.shown(number):g}", unit.unit)
-
-
-def _plain(x: Any) -> Any:
-    return float(x) if isinstance(x, (int, float)) else x
-
-
-def _sign(x: Any) -> Any:
-    if isinstance(x, float):
-        return 1.0 if x >= 0.0 else -1.0
-    with IMPORTS:
-        import numpy as np
-
-    return np.where(x >= 0.0, 1.0, -1.0)

@@ -9,6 +9,7 @@ import csv
 import io
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from importlib import import_module
 from itertools import islice, takewhile
 from math import inf, nan
@@ -40,6 +41,7 @@ Array = NDArray[np.float64]
 Row = tuple[int, list[str]]  # the number of its line, and its cells
 
 
+@dataclass
 class Cells:
     """The rows of a table that are not empty.
 
@@ -49,18 +51,13 @@ class Cells:
     start    index of the first row below the headings
     """
 
-    def __init__(
-        self,
-        name: str,
-        rows: Callable[[], Iterable[Row]],
-        unit: str = "line",
-        decimal_comma: bool = False,
-        comment: Sequence[str] = (),
-    ) -> None:
-        self.name, self.rows, self.unit, self.decimal_comma = name, rows, unit, decimal_comma
-        self.comment = [*comment]
-        self.start = 0
-        self._mark = ""  # the decimal mark of the file, once a number has one
+    name: str
+    rows: Callable[[], Iterable[Row]]
+    unit: str = "line"
+    decimal_comma: bool = False
+    comment: Sequence[str] = ()
+    start: int = 0
+    _mark: str = ""  # the decimal mark of the file, once a number has one
 
     def head(self, most: int = 1000) -> list[list[str]]:
         """The cells of the first rows."""
@@ -145,42 +142,22 @@ def _remedy(cell: str) -> str:
     return "write a number such as 12.5, without a unit"
 
 
-class FrameCells(Cells):
-    """The columns of a frame of pandas or polars."""
-
-    def __init__(self, frame: Any) -> None:
-        names = [str(name) for name in frame.columns]
-        self._columns = [np.asarray(frame[name]) for name in frame.columns]
-        if any(column.ndim != 1 for column in self._columns):
-            raise ValueError(f"data: two columns of one name in {shown(names)}")
-
-        def rows() -> Iterator[Row]:
-            yield 0, names
-            for index, row in enumerate(zip(*self._columns, strict=True), 1):
-                yield index, [str(cell) for cell in row]
-
-        super().__init__("data", rows, "row")
-
-    def numbers(self, columns: Mapping[int, str]) -> list[Array]:
-        """The numbers of columns, NaN where one is missing."""
-        result = []
-        for index, name in columns.items():
-            column = self._columns[index][self.start - 1 :]
-            if column.dtype.kind not in "iuf":
-                column = self._numbers([str(cell) for cell in column], 0, index, name)
-            result.append(column.astype(float))
-        return result
-
-
-# ---- files -------------------------------------------------------------------------------------------
-
-
 def cells_of(source: Any) -> Cells:
     """The cells of a text file, of the first sheet of a workbook, or of a frame."""
     if hasattr(source, "columns"):
-        return FrameCells(source)
+        return _cells_of_frame(source)
     path = as_path("path", source)
     return _cells_of_sheet(path) if path.suffix.lower() in SHEETS else _cells_of_text(path)
+
+
+def _cells_of_frame(frame: Any) -> Cells:
+    """The columns of a frame of pandas or polars."""
+    names = [str(name) for name in frame.columns]
+    columns = [np.asarray(frame[name]) for name in frame.columns]
+    if any(column.ndim != 1 for column in columns):
+        raise ValueError(f"data: two columns of one name in {shown(names)}")
+    rows = [names, *(list(map(str, row)) for row in zip(*(c.tolist() for c in columns), strict=True))]
+    return Cells("data", lambda: enumerate(rows), "row")
 
 
 def _cells_of_text(path: Path) -> Cells:

@@ -6,13 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..units.parse import factor_to_si, is_in_table, parse_unit
-from ..units.scaling import by_digits
-from ..units.system import Conversion
+from ..units.parse import is_in_table, parse_unit
 from ..units.text import spelled
 from .cells import Array, Cells, cells_of
-from .columns import Column, column_of
-from .pressure import needs_piston
+from .columns import Written
 
 # A unit stands at the end of a heading: `Y [mm]`, `Y (mm)`, `Y, mm`, `Y / mm`, `Y in mm`.
 _UNITS = tuple(
@@ -37,16 +34,15 @@ def heading_of(text: str) -> Heading:
 
 
 class Requested(NamedTuple):
-    """A column by its position: name, the unit said for it, its SI units, the unit of plain numbers."""
+    """A column by its position: name, the unit said for it, the SI units that it may be in."""
 
     name: str
     unit: str | None
     si_units: tuple[str, ...]
-    plain: Conversion | None
 
 
-def read_columns(source: Any, requested: Sequence[Requested], least: int = 2) -> list[Column]:
-    """The first columns of a file or frame in SI units; those behind `least` where they have numbers.
+def read_columns(source: Any, requested: Sequence[Requested], least: int = 2) -> list[Written]:
+    """The first columns of a file or frame; those behind `least` where they have numbers.
 
     A unit is that said for a column, else that of its heading, else that of another column of its kind.
     ValueError names file, line, column and remedy.
@@ -58,30 +54,11 @@ def read_columns(source: Any, requested: Sequence[Requested], least: int = 2) ->
         _unit(cells.name, column, [row[index] for row in headings if index < len(row)])
         for index, column in enumerate(requested)
     ]
-    columns = []
-    for (name, _, si_units, plain), unit, numbers in zip(requested, units, values, strict=False):
-        alike = [other for one, other in zip(requested, units, strict=True) if one.si_units == si_units]
-        written = next(filter(None, [unit, *alike]), None)
-        columns.append(_converted_column(f"{cells.name}: {name}", numbers, written, si_units, plain))
-    return columns
-
-
-def _converted_column(
-    what: str, values: Array, unit: str | None, si_units: tuple[str, ...], plain: Conversion | None
-) -> Column:
-    """Numbers in a unit, or without one, as a column in the first SI unit that fits."""
-    if unit is None:
-        return column_of(what, values, si_units, plain)
-    if "N" in si_units and is_in_table(unit) and parse_unit(unit).si == parse_unit("Pa").si:
-        raise needs_piston(what)
-    ordered = si_units[::-1] if is_in_table(unit) else si_units  # the last one's message is raised
-    for si in ordered:
-        try:
-            return Column(by_digits(values, factor_to_si(f"{what} in {unit!r}", unit, si)).tolist(), si)
-        except ValueError:
-            if si == ordered[-1]:
-                raise
-    raise AssertionError(si_units)
+    alike = {column.si_units: unit for column, unit in zip(requested, units, strict=True) if unit is not None}
+    return [
+        Written(numbers, unit or alike.get(column.si_units))
+        for column, unit, numbers in zip(requested, units, values, strict=False)
+    ]
 
 
 def _complete(cells: Cells, names: Sequence[str], least: int) -> list[Array]:
@@ -104,7 +81,7 @@ def _headings(cells: Cells) -> list[list[str]]:
     if start is None:
         raise ValueError(f"{cells.name}: no line begins with two numbers, such as 90, -400")
     cells.start = start
-    headings = head[max(start - 2, 0) : start] or [cells.comment]
+    headings = head[max(start - 2, 0) : start] or [[*cells.comment]]
     last = headings[-1]
     if len(last) > 2 and not last[0].strip() and last[1].strip():
         problem = (
@@ -158,7 +135,7 @@ def named_columns(
     start = next((index for index, row in enumerate(head) if names_a_place(row)), -1)
     if start < 0 and not names_a_place(cells.comment):
         raise ValueError(f"{cells.name}: no heading such as `theta [deg], a_C [m/s2]` names the columns")
-    row, below = head[start] if start >= 0 else cells.comment, (head[start + 1 :] or [[]])[0]
+    row, below = head[start] if start >= 0 else [*cells.comment], (head[start + 1 :] or [[]])[0]
     headings = dict(enumerate(map(heading_of, _paired(row, len(below)))))
     headings = {index: heading for index, heading in headings.items() if is_known(heading.name)}
     units = {index: below[index].strip("[]() ") for index in headings if index < len(below)}

@@ -26,6 +26,13 @@ class Column(NamedTuple):
     kind: str = "value"
 
 
+class Written(NamedTuple):
+    """Numbers of a file, as an array, and the unit that is written there."""
+
+    values: Any
+    unit: str | None
+
+
 def places_and_values(places: Any, values: Any) -> tuple[Any, Any]:
     """The places and values that are given; of a Series alone its index and its values."""
     if values is None and hasattr(places, "iloc") and getattr(places, "ndim", 0) == 1:
@@ -36,19 +43,18 @@ def places_and_values(places: Any, values: Any) -> tuple[Any, Any]:
 def column_of(what: str, given: Any, units: tuple[str, ...], own: Conversion | None) -> Column:
     """Finite numbers in SI units, plain ones from `own`; their unit is one of `units`."""
     said = getattr(given, "attrs", {}).get("units")
-    if said in units:
-        return Column(_finite(what, given.values.tolist()), said)
+    if isinstance(given, Written):
+        given, said = given
     if said is not None:
-        unit = _same_kind(str(said), units)
-        values = conversion(what, str(said), unit).to_si(given.values)
+        unit = said if said in units else _same_kind(str(said), units)
+        values = getattr(given, "values", given)
+        values = values if unit == said else conversion(what, str(said), unit).to_si(values)
         return Column(_finite(what, values.tolist()), unit)
     if hasattr(given, "magnitude"):
         unit, found = _first_that_fits(what, given, units)
         return Column(_finite(what, found.tolist()), unit)
     if isinstance(given, UNORDERED) or not hasattr(given, "__iter__"):
         raise TypeError(f"{what} = {shown(given)}: expected a list or array of numbers")
-    if getattr(getattr(given, "dtype", None), "kind", "O") in "iuf" and getattr(given, "ndim", 0) == 1:
-        return _column_of_array(what, given, units, own)
     elements = given.tolist() if hasattr(given, "tolist") else list(given)
     if any(isinstance(row, (list, tuple)) or getattr(row, "ndim", 0) for row in elements):
         call = what.partition(":")[0]
@@ -65,7 +71,8 @@ def column_of(what: str, given: Any, units: tuple[str, ...], own: Conversion | N
     if told not in (None, units[0]) and own.si != 1:
         raise ValueError(f"{what}: plain numbers, which would be in {own.unit}, beside a text in {told}")
     # As the text of the number would be: the decimal that is written, not the double nearest to it.
-    values = [by_digits(n, own.si) if plain else n for n, plain in zip(numbers, bare, strict=True)]
+    scaled = by_digits(_array(numbers), own.si).tolist()
+    values = [si if plain else n for n, si, plain in zip(numbers, scaled, bare, strict=True)]
     return Column(values, told or (units[0] if own.si != 1 else None))
 
 
@@ -111,15 +118,8 @@ def _finite(what: str, values: list[Any]) -> list[float]:
     return found
 
 
-def _column_of_array(what: str, given: Any, si_units: tuple[str, ...], plain: Conversion | None) -> Column:
-    """Numbers without a unit; ValueError for one that is not finite."""
+def _array(numbers: list[float]) -> Any:
     with IMPORTS:
         import numpy as np
 
-    values = np.asarray(given, float)
-    finite = np.isfinite(values)
-    if not finite.all():
-        raise ValueError(f"{what}: {values[finite.argmin()]}; every one must be a finite number")
-    if plain is None or not values.any():  # 0 is 0 in any unit
-        return Column(values.tolist(), None, bool(values.any()))
-    return Column(by_digits(values, plain.si).tolist(), si_units[0] if plain.si != 1 else None)
+    return np.array(numbers)

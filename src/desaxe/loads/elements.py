@@ -1,18 +1,21 @@
 """`spring`, `damper`, `over_V`: forces on the slider by its position and its speed."""
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
 
 from ..mechanism.inputs import Input
-from ..mechanism.quantity_units import SI, UnitSystem
-from ..mechanism.read import number_of
+from ..mechanism.quantity_units import SI
+from ..mechanism.read import read
 from ..mechanism.slips import warn_of_slips
-from ..support.shown import shown
-from .along_motion import Damper, Spring
-from .columns import column_of
-from .load import Load
+from ..support.computed import computed_once
+from ..support.shown import with_unit
+from .along_motion import OverColumn
+from .load import Load, outside
 from .made import table_over_V
-from .maker import MAKING, Maker
+from .maker import Maker
+from .of_columns import MakeTable
+from .table import Table
 from .units import force_unit, load_over
 
 STIFFNESS = Input("stiffness", "N/m", "of a spring", 0.0, "a stiffness >= 0")
@@ -21,7 +24,92 @@ LINEAR = Input("linear", "N*s/m", "of a damper", 0.0, "a coefficient >= 0")
 QUADRATIC = Input("quadratic", "N*s^2/m^2", "of a damper", 0.0, "a coefficient >= 0")
 
 
-class MakeSpring(Maker):
+class Element(OverColumn):
+    """A load by its numbers, whose table of two pieces follows from these."""
+
+    unit = "N"
+    call: ClassVar[str]
+    names: ClassVar[tuple[str, ...]]
+
+    @property
+    def numbers(self) -> Mapping[str, float]:  # type: ignore[override]
+        """The numbers by which a motion has derivatives."""
+        return {name: getattr(self, name) for name in self.names}
+
+    def told(self, conversion: Any = None) -> str:
+        """The numbers in a line."""
+        units = {name: (self.shown_in or SI).of(f"F_Y.{name}") for name in self.names}
+        texts = (
+            f"{n} = " + with_unit(f"{units[n].shown(x):g}", units[n].unit) for n, x in self.numbers.items()
+        )
+        return f"<{self.call}: {', '.join(texts)}>"
+
+
+@dataclass(frozen=True, repr=False)
+class Spring(Element):
+    """A spring between slider and frame: F = -stiffness (Y - free)."""
+
+    stiffness: float
+    free: float
+    plain: tuple[str, ...] = field(default=(), compare=False)
+
+    call = "spring"
+    needs = ("Y",)
+    names = ("stiffness", "free")
+
+    @computed_once
+    def table(self) -> Table:
+        """A line through the free position."""
+        row = 0.0, -self.stiffness, 0.0, 0.0
+        return Table((self.free,), (row, row))
+
+    def by(self, now: Mapping[str, Any]) -> dict[str, Any]:
+        """The derivatives by stiffness and free position."""
+        stretch = now["Y"] - self.free
+        return {"stiffness": -stretch, "free": 0.0 * stretch + self.stiffness}
+
+
+@dataclass(frozen=True, repr=False)
+class Damper(Element):
+    """A damper between slider and frame: F = -linear V_C - quadratic |V_C| V_C."""
+
+    linear: float
+    quadratic: float
+    plain: tuple[str, ...] = field(default=(), compare=False)
+
+    call = "damper"
+    needs = ("V_C",)
+    names = ("linear", "quadratic")
+
+    @computed_once
+    def table(self) -> Table:
+        """Parabolas that meet at rest."""
+        return Table((0.0,), tuple((0.0, -self.linear, side * self.quadratic, 0.0) for side in (1.0, -1.0)))
+
+    def by(self, now: Mapping[str, Any]) -> dict[str, Any]:
+        """The derivatives by both coefficients."""
+        V = now["V_C"]
+        return {"linear": -V, "quadratic": -abs(V) * V}
+
+
+class MakeElement(Maker):
+    """A maker of loads by their numbers."""
+
+    place: ClassVar[str]
+
+    def numbers(self, written: Mapping[Input, Any]) -> tuple[Any, ...]:
+        """Numbers in SI units, plain ones from those of a machine, and what of them is plain."""
+        units, numbers, plain = self.units or SI, [], False
+        force_unit(units)  # which is the same along both axes
+        for row, value in written.items():
+            number = read(row, value, self.name, f"{row.limit}, a number or a text with a unit")
+            if not isinstance(value, str) and not hasattr(value, "magnitude"):
+                number, plain = float(units.of(f"F_Y.{row.name}").to_si(number)), plain or number != 0.0
+            numbers.append(number)
+        return *numbers, ("value", self.place) if plain and self.units is None else ()
+
+
+class MakeSpring(MakeElement):
     """`spring(stiffness, free)`: a spring between slider and frame, F = -stiffness (Y - free).
 
         back = dx.spring("4 N/mm", free="120 mm")
@@ -36,15 +124,15 @@ class MakeSpring(Maker):
 
     name = "spring"
     takes = "stiffness, free"
+    place = "Y"
 
     def __call__(self, stiffness: Any, free: Any) -> Load:
         """A spring; see `help(desaxe.spring)`."""
-        numbers = _number(STIFFNESS, stiffness, self.units), _number(FREE, free, self.units)
-        warn_of_slips({"free": free}, self.units or SI, stacklevel=MAKING)
-        return Spring(*numbers, ("value", "Y") if self.units is None and _plain(stiffness, free) else ())
+        warn_of_slips({"free": free}, self.units or SI, stacklevel=outside() + 1)
+        return Spring(*self.numbers({STIFFNESS: stiffness, FREE: free}))
 
 
-class MakeDamper(Maker):
+class MakeDamper(MakeElement):
     """`damper(linear=0, quadratic=0)`: a damper between slider and frame.
 
         oil = dx.damper(linear="200 N s/m")
@@ -60,15 +148,14 @@ class MakeDamper(Maker):
 
     name = "damper"
     takes = "linear=0, quadratic=0"
+    place = "V_C"
 
     def __call__(self, linear: Any = 0.0, quadratic: Any = 0.0) -> Load:
         """A damper; see `help(desaxe.damper)`."""
-        numbers = _number(LINEAR, linear, self.units), _number(QUADRATIC, quadratic, self.units)
-        plain = _plain(*(x for x in (linear, quadratic) if shown(x) not in ("0", "0.0")))
-        return Damper(*numbers, ("value", "V_C") if plain and self.units is None else ())
+        return Damper(*self.numbers({LINEAR: linear, QUADRATIC: quadratic}))
 
 
-class MakeOverV(Maker):
+class MakeOverV(MakeTable):
     """`over_V(speeds, forces)`: a load over the slider's speed V_C, for F_X and F_Y.
 
         throttle = dx.over_V(["-2 m/s", "0 m/s", "2 m/s"], [900, 0, -400])
@@ -85,6 +172,7 @@ class MakeOverV(Maker):
 
     name = "over_V"
     takes = "speeds, forces, kind='linear'"
+    places, ways, over, si = "speeds", ("forces",), "V_C", "m/s"
 
     def __call__(
         self,
@@ -95,30 +183,9 @@ class MakeOverV(Maker):
         derivative: Callable[[Any], Any] | None = None,
     ) -> Load:
         """A load over the slider's speed; see `help(desaxe.over_V)`."""
-        if callable(speeds):
+        if callable(speeds) or derivative is not None:
             return load_over("over_V", "V_C", (speeds, forces, derivative), self.units)
-        if derivative is not None:
-            raise TypeError("over_V: derivative= belongs to a function; a table has its own")
-        if forces is None:
-            raise TypeError("over_V: forces is missing: the load at each of the speeds")
-        x = column_of("over_V: speeds", speeds, ("m/s",), self.unit("V_C"))
-        return table_over_V(x, column_of("over_V: forces", forces, ("N",), force_unit(self.units)), kind)
-
-
-def _number(row: Input, value: Any, units: UnitSystem | None) -> float:
-    """A number in SI units, a plain one from these."""
-    number = number_of(row, value)
-    if number is None:
-        raise TypeError(f"{row.name} = {shown(value)}: expected {row.limit}, a number or a text with a unit")
-    if units is None or not _plain(value):
-        return number
-    force_unit(units)  # which is the same along both axes
-    return float(units.of(f"F_Y.{row.name}").to_si(number))
-
-
-def _plain(*values: Any) -> bool:
-    """True if one of the values has no unit."""
-    return any(not isinstance(value, str) and not hasattr(value, "magnitude") for value in values)
+        return table_over_V(*self.columns(speeds, forces), kind=kind)
 
 
 spring = MakeSpring()

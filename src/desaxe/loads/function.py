@@ -49,7 +49,7 @@ class FunctionOverTheta(OverTheta):
         return bool(np.ptp(values, axis=0).max() <= REPEATED * np.abs(values).max())
 
     @property
-    def has_slope(self) -> bool:
+    def has_slope(self) -> bool:  # type: ignore[override]
         """True where the derivative was given."""
         return self.derivative is not None
 
@@ -84,8 +84,12 @@ class FunctionOverTheta(OverTheta):
 
     def told(self, conversion: Any = None) -> str:
         """The function's name in a line."""
-        name = getattr(self.function, "__name__", type(self.function).__name__)
-        return f"<load over theta: the function {name}>"
+        return f"<load over theta: the function {name_of(self.function)}>"
+
+
+def name_of(function: Any) -> str:
+    """What a user's function is called, in messages."""
+    return str(getattr(function, "__name__", type(function).__name__))
 
 
 def called(function: Callable[..., Any], columns: Mapping[str, Any], what: str) -> Any:

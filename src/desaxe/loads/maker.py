@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from ..mechanism.keywords import with_known_keywords
 from ..mechanism.messages import errors_in, message_of
 from ..mechanism.quantity_units import SI, UnitSystem
-from ..support.forks import IMPORTS
 from ..support.shown import printable
 from ..units.system import Conversion
 
 if TYPE_CHECKING:
-    from .columns import Column
+    pass
 
 
 class Maker:
@@ -29,9 +28,9 @@ class Maker:
         self.units = units
 
     def __init_subclass__(cls) -> None:
-        for method, name in (("__call__", cls.name), ("read", f"{cls.name}.read")):
+        for method, end in (("__call__", ""), ("read", ".read")):
             if method in cls.__dict__:
-                function = cls.__dict__[method]
+                function, name = cls.__dict__[method], cls.name + end
                 function.__qualname__ = name  # as errors of Python call it
                 setattr(cls, method, with_known_keywords(_in_its_units(function), name))
 
@@ -39,19 +38,9 @@ class Maker:
         """The unit of plain numbers of a name; None where none is given."""
         return None if self.units is None else self.units.of(name)
 
-    def columns_of_file(self, source: Any, *requested: tuple[Any, ...]) -> "list[Column]":
-        """The columns of a file or a frame in SI units; the fields of each are those of `Requested`."""
-        with IMPORTS:
-            from .column_files import Requested, read_columns
-
-        return read_columns(source, [Requested(*one) for one in requested])
-
     def __repr__(self) -> str:
         units = f" in {self.units!r}" if self.units else ""
         return f"desaxe.{self.name}({self.takes}){units}"
-
-
-MAKING = 5  # frames between the caller of a maker and its warning
 
 
 @contextmanager
@@ -76,7 +65,7 @@ def _in_its_units(method: Callable[..., Any]) -> Callable[..., Any]:
             raise TypeError(f"{method.__qualname__}() {told}")
         with errors_in(self.units or SI):
             found = method(self, *args, **named)
-        if self.units and hasattr(found, "told"):
+        if self.units:
             object.__setattr__(found, "shown_in", self.units)
         return found
 

@@ -14,9 +14,10 @@ from ..mechanism.quantity_units import SI, UnitSystem
 from ..mechanism.read import in_si, read_array
 from ..mechanism.slips import warn_of_slips
 from ..support.shown import shown
-from .columns import Column, column_of
+from .load import outside
 from .made import ascending_table
-from .maker import MAKING, Maker, naming
+from .maker import Maker
+from .of_columns import MakeTable
 from .table import Table
 
 Array = NDArray[np.float64]
@@ -32,14 +33,13 @@ class Motor(ABC):
     """A torque on the crank [N m], positive like theta, over the crank's speed [rad/s].
 
     knots   speeds at which pieces of a table meet
-    units   that its text is in, of the machine or scene that it was made for
     plain   what was given as plain numbers, which a machine in other units could mean otherwise
     """
 
     call: ClassVar[str] = "over_omega"  # the call that makes it
     knots: tuple[float, ...] = ()
     plain: tuple[str, ...] = ()
-    units: UnitSystem | None = None
+    shown_in: UnitSystem | None = None  # of the machine that made it, in which it is called
 
     @property
     def numbers(self) -> Mapping[str, Any]:
@@ -60,8 +60,8 @@ class Motor(ABC):
 
     def __call__(self, omega: Any) -> Any:
         """The torque at a speed, in the units of the machine or scene that it was made for, else in SI."""
-        torque = self.value(in_si(INPUTS["omega"], omega, self.units))
-        return (self.units or SI).of("torque").shown(torque)
+        torque = self.value(in_si(INPUTS["omega"], omega, self.shown_in))
+        return (self.shown_in or SI).of("torque").shown(torque)
 
     def value(self, omega: Any) -> Any:
         """The torque at a speed [rad/s]: a number or an array."""
@@ -73,7 +73,7 @@ class Motor(ABC):
         return self
 
     def __repr__(self) -> str:
-        return f"<{self._text().in_units(self.units or SI)}>"
+        return f"<{self._text().in_units(self.shown_in or SI)}>"
 
     @abstractmethod
     def _text(self) -> Message:
@@ -87,7 +87,6 @@ class OverOmega(Motor):
     table: Table
     kind: str
     plain: tuple[str, ...] = field(default=(), compare=False)
-    units: UnitSystem | None = field(default=None, compare=False)
 
     @property
     def knots(self) -> tuple[float, ...]:  # type: ignore[override]
@@ -120,7 +119,6 @@ class Kloss(Motor):
     synchronous_speed: Any
     gear: Any = 1.0
     plain: tuple[str, ...] = field(default=(), compare=False)
-    units: UnitSystem | None = field(default=None, compare=False)
     call: ClassVar[str] = "kloss"
     SLIPS: ClassVar[Array] = np.geomspace(0.05, 20.0, 7)  # over the breakdown slip
 
@@ -135,24 +133,27 @@ class Kloss(Motor):
 
     def both(self, omega: Any, row: Mapping[str, Any]) -> tuple[Any, Any]:
         """The torque and its derivative by the speed."""
-        most, slip, speed, gear = (row[r.name] for r in ROWS)
-        u = (1.0 - gear * omega / speed) / slip
-        top, square = gear * np.copysign(most, speed), u * u
-        torque = top * 2.0 * u / (1.0 + square)
-        return torque, top * _bend(square) * (-gear / (speed * slip))
+        _, slip, speed, gear = (row[r.name] for r in ROWS)
+        torque, bend = self._at(omega, row)
+        return torque, bend * (-gear / (speed * slip))
 
     def by(self, omega: Any, row: Mapping[str, Any]) -> dict[str, Any]:
         """The derivatives of the torque by the four parameters."""
         most, slip, speed, gear = (row[r.name] for r in ROWS)
-        u = (1.0 - gear * omega / speed) / slip
-        top, square = gear * np.copysign(most, speed), u * u
-        torque, bend = top * 2.0 * u / (1.0 + square), top * _bend(square)
+        torque, bend = self._at(omega, row)
         return {
             "breakdown_torque": torque / most,
-            "breakdown_slip": -bend * u / slip,
+            "breakdown_slip": -bend * (1.0 - gear * omega / speed) / (slip * slip),
             "synchronous_speed": bend * gear * omega / (speed * speed * slip),
             "gear": torque / gear - bend * omega / (speed * slip),
         }
+
+    def _at(self, omega: Any, row: Mapping[str, Any]) -> tuple[Any, Any]:
+        """The torque, and its derivative by the slip over that of breakdown."""
+        most, slip, speed, gear = (row[r.name] for r in ROWS)
+        u, top = (1.0 - gear * omega / speed) / slip, gear * np.copysign(most, speed)
+        square = u * u
+        return top * 2.0 * u / (1.0 + square), top * 2.0 * (1.0 - square) / (1.0 + square) ** 2
 
     def speeds(self, row: Mapping[str, Any]) -> Array:
         """From standstill beyond the synchronous speed, close together around the breakdown slips."""
@@ -167,12 +168,7 @@ class Kloss(Motor):
         return "induction motor: " + listed([named(name, value) for name, value in self.numbers.items()])
 
 
-def _bend(square: Any) -> Any:
-    """The derivative of 2 u/(1 + u^2) by u, from u^2."""
-    return 2.0 * (1.0 - square) / (1.0 + square) ** 2
-
-
-class MakeOverOmega(Maker):
+class MakeOverOmega(MakeTable):
     """`over_omega(speeds, torques, kind="linear")`: a motor from a table, wherever a torque is given.
 
         motor = dx.over_omega(["0 rpm", "600 rpm", "1000 rpm"], [30, 45, 0])
@@ -190,14 +186,13 @@ class MakeOverOmega(Maker):
 
     name = "over_omega"
     takes = "speeds, torques, kind='linear'"
+    places, ways, over, si, values = "speeds", ("torques",), "omega", "rad/s", ("N*m",)
 
     def __call__(self, speeds: Any, torques: Any, kind: str = "linear") -> Motor:
         """A motor from a table; see `help(desaxe.over_omega)`."""
-        x = column_of("over_omega: speeds", speeds, ("rad/s",), self.unit("omega"))
-        y = column_of("over_omega: torques", torques, ("N*m",), self.unit("torque"))
-        if x.plain and self.units is None:
-            warn_of_slips({"omega": max(x.values, key=abs, default=0.0)}, stacklevel=MAKING)
-        return table_over_omega(x, y, kind, self.units)
+        x, y = self.columns(speeds, torques)
+        table = ascending_table("over_omega", "omega", x, y, kind)
+        return OverOmega(table, kind, ("omega",) * x.plain + ("torque",) * y.plain)
 
     def read(
         self,
@@ -212,19 +207,8 @@ class MakeOverOmega(Maker):
                         "speed [rpm], torque [N m]", else SI units
         kind            as in `over_omega`; the form of the file is that of `over_theta.read`
         """
-        x, y = self.columns_of_file(
-            path,
-            ("omega", omega, ("rad/s",), self.unit("omega")),
-            ("torque", torque, ("N*m",), self.unit("torque")),
-        )
-        with naming(path):
-            return table_over_omega(x, y, kind, self.units)
-
-
-def table_over_omega(x: Column, y: Column, kind: str, units: UnitSystem | None) -> Motor:
-    """A motor from columns of speeds and torques; ValueError where they are no function."""
-    table = ascending_table("over_omega", "omega", ("speeds", "torques"), (x, y), kind)
-    return OverOmega(table, kind, ("omega",) * x.plain + ("torque",) * y.plain, units)
+        motor: Motor = self.from_file(path, {"omega": omega, "torque": torque}, kind=kind)
+        return motor
 
 
 class MakeKloss(Maker):
@@ -251,11 +235,11 @@ class MakeKloss(Maker):
         """An induction motor; see `help(desaxe.kloss)`."""
         written = dict(zip(ROWS, (breakdown_torque, breakdown_slip, synchronous_speed, gear), strict=True))
         by_name = {row.name: value for row, value in written.items()}
-        warn_of_slips(by_name, self.units or SI, stacklevel=MAKING)
+        warn_of_slips(by_name, self.units or SI, stacklevel=outside() + 1)
         most, slip, speed, ratio = (_numbers(row, value, self.units) for row, value in written.items())
         kinds = {"N*m": "torque", "rad/s": "omega"}
         plain = [kinds[row.unit] for row, value in written.items() if row.unit in kinds and _is_plain(value)]
-        return Kloss(most, slip, speed, ratio, () if self.units else tuple(plain), self.units)
+        return Kloss(most, slip, speed, ratio, () if self.units else tuple(plain))
 
 
 def _numbers(row: Input, value: Any, units: UnitSystem | None) -> Any:

@@ -1,6 +1,5 @@
 """Pressures on the slider, a piston, as forces: F_Y = -(p - ambient) area, towards the crank."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import log, pi
 from typing import Any
@@ -12,12 +11,14 @@ from ..mechanism.read import read
 from ..mechanism.slips import UnitWarning
 from ..units.system import Conversion
 from .columns import Column, column_of
+from .load import outside
 
 AREA = Input("area", "m^2", "of the piston", TINY, "an area > 0")
 BORE = Input("bore", "m", "diameter of the piston", TINY, "a length > 0")
 AMBIENT = Input("ambient", "Pa", "pressure on the other side of the piston", 0.0, "a finite pressure >= 0")
 PISTON = (AREA, BORE, AMBIENT)
 ATMOSPHERE = 1e5  # Pa
+OF_PRESSURES = ("over_theta", "over_Y", "over_stroke")  # calls that have a piston
 VACUUM, PRESSED = 1e3, 1e4  # Pa: nobody works against a vacuum below the one with pressures above the other
 UNITS = {"bar": 1e5, "kPa": 1e3, "MPa": 1e6, "psi": 6894.757}
 
@@ -34,11 +35,6 @@ class Piston:
         """The force along Y of a pressure [Pa]."""
         return (self.ambient - pressure) * self.area
 
-    def functions(self, function: Any, derivative: Any) -> tuple[Any, Any]:
-        """A function that returns pressures [Pa], and its derivative, as ones of forces."""
-        slope = None if derivative is None else ForceOfPressure(derivative, self.area, 0.0)
-        return ForceOfPressure(function, self.area, self.ambient), slope
-
     def column(self, pressures: Column) -> Column:
         """A column of pressures as one of forces; warns of an ambient pressure far below them."""
         self._warn_of_ambient(max(map(abs, pressures.values), default=0.0))
@@ -53,26 +49,8 @@ class Piston:
             f"ambient = {self.written:.6g} Pa beside pressures up to {largest:.6g} Pa, almost surely a slip: "
             f'write ambient = "{self.written:.6g} {meant}"',
             UnitWarning,
-            stacklevel=6,
+            stacklevel=outside(),
         )
-
-
-@dataclass(frozen=True)
-class ForceOfPressure:
-    """A function that returns pressures, or their derivative, as one that returns forces."""
-
-    function: Callable[[Any], Any]
-    area: float
-    ambient: float
-
-    @property
-    def __name__(self) -> str:
-        """The name of the function."""
-        return getattr(self.function, "__name__", type(self.function).__name__)
-
-    def __call__(self, at: Any) -> Any:
-        """The force, or its derivative."""
-        return (self.ambient - self.function(at)) * self.area
 
 
 def piston_of(name: str, area: Any, bore: Any, ambient: Any, units: UnitSystem | None) -> Piston | None:
@@ -94,22 +72,16 @@ def piston_of(name: str, area: Any, bore: Any, ambient: Any, units: UnitSystem |
 
 
 def forces_of(
-    what: str,
-    values: Any,
-    units: tuple[str, ...],
-    plain: Conversion | None,
-    piston: Piston | None,
-    system: Any,
+    what: str, values: Any, units: tuple[str, ...], plain: Conversion | None, piston: Piston | None
 ) -> Column:
-    """A column of forces or torques, or of pressures on a piston."""
-    if piston is not None:
-        return piston.column(column_of(what, values, ("Pa",), pressure_unit(system)))
+    """A column of forces or torques, which pressures on a piston become."""
     try:
-        return column_of(what, values, units, plain)
+        column = column_of(what, values, units, plain)
     except ValueError:
-        if is_pressure(what, values):
+        if piston is None and what.startswith(OF_PRESSURES) and is_pressure(what, values):
             raise needs_piston(what) from None
         raise
+    return column if piston is None else piston.column(column)
 
 
 def needs_piston(what: str) -> ValueError:
@@ -123,8 +95,3 @@ def is_pressure(what: str, values: Any) -> bool:
         return column_of(what, values, ("Pa",), None).unit is not None
     except (TypeError, ValueError):
         return False
-
-
-def pressure_unit(units: UnitSystem | None) -> Conversion | None:
-    """The unit of plain pressures of a machine; None without any."""
-    return None if units is None else units.of_unit("Pa")

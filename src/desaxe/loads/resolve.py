@@ -21,11 +21,12 @@ from ..mechanism.own import Definition, Register, register, used_by
 from ..mechanism.program import Variant, program_of
 from ..mechanism.quantity_units import UnitSystem
 from ..support.forks import IMPORTS
-from .along_motion import COLUMNS, FunctionOfMotion, OfMotion
+from ..support.recent import Recent
+from .along_motion import COLUMNS, FunctionOfMotion, OfMotion, SumOfLoads
 from .arguments import arguments_of, by_position
 from .arithmetic import parts_of
 from .function import FunctionOverTheta
-from .load import Load, OverY
+from .load import Load
 from .stroke import OverStroke
 
 FUNCTIONS = {"Y": "over_Y", "V_C": "over_V"}  # what makes a load of a function with its derivative
@@ -64,9 +65,11 @@ def settled(name: str, load: Any, units: UnitSystem) -> Any:
     """
     if not getattr(load, "plain", ()):
         return load
+    if isinstance(load, SumOfLoads):
+        return replace(load, terms=tuple((f, settled(name, part, units)) for f, part in load.terms))
     other = plain_units(name, load, units).values()
     if other:
-        call = load.call if hasattr(load, "call") else f"over_{load.over}"
+        call = getattr(load, "call", f"over_{load.over}")
         texts = ", ".join(f'"... {unit}"' for unit in other)
         raise ValueError(
             f"{name}: plain numbers of desaxe.{call} are in SI units, but those given here are in "
@@ -118,11 +121,11 @@ class LoadPlan(NamedTuple):
     @property
     def follows_speed(self) -> bool:
         """True if a load depends on how fast the crank turns."""
-        return any(isinstance(load, OfMotion) and load.follows_speed for load in self.loads.values())
+        return any(load.follows_speed for load in self.loads.values())
 
 
 MOST_PLANS = 1024
-_PLANS: dict[Any, tuple[LoadPlan, tuple[str, ...]]] = {}  # without their loads, whose names follow
+_PLANS: Recent[Any, LoadPlan] = Recent(MOST_PLANS)  # for loads of the same kinds
 
 
 def plan_of(
@@ -137,13 +140,11 @@ def plan_of(
     known = known or register()
     sorts = tuple((name, load.variant) for name, load in loads.items())
     key = tuple(names), sorts, state, mu, known
-    found = _PLANS.get(key)
-    if found is None:
-        if len(_PLANS) >= MOST_PLANS:
-            _PLANS.clear()
+    plan = _PLANS.get(key)
+    if plan is None:
         plan = _new_plan(names, loads, state, mu, known)
-        found = _PLANS[key] = plan._replace(loads={}), tuple(plan.loads)
-    return found[0]._replace(loads={name: loads[name] for name in found[1]})
+        _PLANS[key] = plan._replace(loads=dict.fromkeys(plan.loads))  # type: ignore[arg-type]
+    return plan._replace(loads={name: loads[name] for name in plan.loads})
 
 
 def _new_plan(
@@ -170,10 +171,8 @@ def _new_plan(
     of_motion: dict[str, None] = {}
     for force, load in used.items():
         by = sorted({term.parameter for term in every if term.force == force})
-        if isinstance(load, OverY):
-            motion |= dict.fromkeys(load.motion(by))
-        elif isinstance(load, OfMotion):
-            (of_motion if parts_of(load) is None else motion).update(dict.fromkeys(load.motion(by, state)))
+        columns = of_motion if parts_of(load) is None else motion
+        columns |= dict.fromkeys(load.motion(by, state))
     more = (term.slope for term in every)
     wanted = tuple(dict.fromkeys((*names, *more)))
     return LoadPlan(tuple(names), wanted, terms, used, tuple(motion), forces_of, tuple(of_motion))

@@ -1,11 +1,10 @@
 """A load over the slider's distance from a dead centre of its own: it moves with the design."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ..mechanism.names import LENGTHS
-from .load import POSITION, OverY
+from .load import OverY, Partials, sign_of
 
 DEAD_CENTRES = ("outer", "inner")
 
@@ -29,19 +28,21 @@ class OverStroke(OverY):
         return f"Y_{self.dead_centre}"
 
     @property
-    def place(self) -> str:  # type: ignore[override]
+    def needs(self) -> tuple[str, ...]:  # type: ignore[override]
+        """The position, and that of the dead centre."""
+        return "Y", self.centre
+
+    @property
+    def place(self) -> str:
         """The distance that the load is over, in words."""
         return f"the distance from the {self.dead_centre} dead centre"
-
-    def motion(self, parameters: Iterable[str] = ()) -> tuple[str, ...]:
-        """The names of the motion from which the load and its derivatives by these parameters follow."""
-        parameters = tuple(parameters)
-        own = (f"{self.centre}_wrt_{p}" for p in parameters if p in LENGTHS)
-        return (*POSITION, self.centre, *(f"Y_wrt_{p}" for p in parameters), *own)
 
     def along(self, motion: Mapping[str, Any]) -> Any:
         """The distance from the dead centre."""
         return abs(motion[self.centre] - motion["Y"])
 
-    def _content(self) -> str:
-        return f"{self.dead_centre} {super()._content()}"
+    def partials(self, now: Mapping[str, Any]) -> Partials:
+        """The value and the derivatives by Y and the dead centre."""
+        value, slope = self.both(self.along(now), now["way"])
+        slope = slope * sign_of(now["Y"] - now[self.centre])
+        return Partials(value, {"Y": slope, self.centre: -slope})

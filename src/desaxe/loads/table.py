@@ -35,6 +35,11 @@ class Table:
     rows: tuple[Row, ...]
     period: float | None = None
 
+    def affine(self, factor: float, number: float) -> "Table":
+        """The table times a factor, plus a number."""
+        rows = tuple((factor * a + number, factor * b, factor * c, factor * d) for a, b, c, d in self.rows)
+        return Table(self.knots, rows, self.period)
+
     def reduced(self, x: float) -> float:
         """The angle shifted into the first period."""
         if self.period is None or x - x != 0.0:

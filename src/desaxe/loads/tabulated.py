@@ -2,28 +2,21 @@
 
 from collections.abc import Callable
 from typing import Any
-from warnings import warn
 
 from ..mechanism.closed import TURN
 from ..mechanism.messages import amount
-from ..mechanism.quantity_units import UnitSystem
-from ..mechanism.slips import UnitWarning
-from ..mechanism.typical import FARTHEST
 from ..support.shown import shown
-from ..units.system import Conversion
-from .arithmetic import attach_operators
-from .columns import Column, column_of, places_and_values
+from .columns import Column, column_of
 from .function import FunctionOverTheta
 from .load import Load
 from .made import dead_centre_of, table_over_stroke, table_over_theta, table_over_Y
-from .maker import Maker, naming
-from .pressure import Piston, forces_of, piston_of, pressure_unit
-from .units import force_unit, functions_over, load_over
+from .of_columns import MakeTable
+from .units import functions_over, load_over
 
 LONGEST_PERIOD = 1e9
 
 
-class MakeOverTheta(Maker):
+class MakeOverTheta(MakeTable):
     """`over_theta(angles, values)`: a load over the crank angle, wherever F_X, F_Y or a torque is given.
 
         press = dx.over_theta(["0 deg", "90 deg", "180 deg", "270 deg"], [0, -400, -50, 0], kind="linear")
@@ -58,6 +51,7 @@ class MakeOverTheta(Maker):
 
     name = "over_theta"
     takes = "angles, values, kind='cubic', period=2 pi"
+    places, ways, over, si, values = "angles", ("values",), "theta", "rad", ("N", "N*m")
 
     def __call__(
         self,
@@ -73,22 +67,18 @@ class MakeOverTheta(Maker):
         ambient: Any = None,
     ) -> Load:
         """A load over the crank angle; see `help(desaxe.over_theta)`."""
-        name = "over_theta"
-        turn = self._period(period)
-        piston = piston_of(name, area, bore, ambient, self.units)
+        turn, piston = self._period(period), self.piston(area, bore, ambient)
         if callable(angles):
             if not isinstance(kind, str):
                 nodes = kind
-            places = column_of(f"{name}: nodes", nodes, ("rad",), self.unit("theta")).values
-            functions = functions_over(name, "theta", (angles, values, derivative), self.units, piston)
+            places = column_of("over_theta: nodes", nodes, ("rad",), self.unit("theta")).values
+            functions = functions_over(
+                "over_theta", "theta", (angles, values, derivative), self.units, piston
+            )
             return FunctionOverTheta(*functions, tuple(places), turn.values[0])
         if derivative is not None or len(nodes):
-            raise TypeError(f"{name}: derivative= and nodes= belong to a function; a table has its own")
-        angles, values = places_and_values(angles, values)
-        x = column_of(f"{name}: angles", angles, ("rad",), self.unit("theta"))
-        if values is None:
-            raise TypeError(f"{name}: values is missing (angles and values, or a function of theta)")
-        y = forces_of(f"{name}: values", values, ("N", "N*m"), force_unit(self.units), piston, self.units)
+            raise TypeError("over_theta: derivative= and nodes= belong to a function; a table has its own")
+        x, y = self.columns(angles, values, piston=piston)
         return table_over_theta(x, y, kind, turn, self.units)
 
     def read(
@@ -115,17 +105,11 @@ class MakeOverTheta(Maker):
         commas. Lines above the numbers are a heading, lines that begin with # are left out. Raises
         ValueError, which names file, line and column.
         """
-        piston = piston_of("over_theta.read", area, bore, ambient, self.units)
-        x, y = self.columns_of_file(
-            path,
-            ("theta", theta, ("rad",), self.unit("theta")),
-            ("value", value, *_values(("N", "N*m"), piston, self.units)),
-        )
-        y = y if piston is None else piston.column(y)
-        with naming(path):
-            return table_over_theta(x, y, kind, self._period(period), self.units)
+        more = {"kind": kind, "period": period, "area": area, "bore": bore, "ambient": ambient}
+        load: Load = self.from_file(path, {"theta": theta, "value": value}, **more)
+        return load
 
-    def _period(self, period: Any) -> "Column":
+    def _period(self, period: Any) -> Column:
         if isinstance(period, float) and period == TURN:  # a turn, in any unit
             return Column([TURN])
         found = column_of("over_theta: period", [period], ("rad",), self.unit("theta"))
@@ -136,7 +120,7 @@ class MakeOverTheta(Maker):
         return found
 
 
-class MakeOverY(Maker):
+class MakeOverY(MakeTable):
     """`over_Y(positions, outward, inward=None)`: a load over the slider's position, for F_X and F_Y.
 
     For what is fixed in the frame, as a cylinder: the load follows the slider, so that sensitivities by
@@ -161,6 +145,7 @@ class MakeOverY(Maker):
 
     name = "over_Y"
     takes = "positions, outward, inward=None"
+    places = "positions"
 
     def __call__(
         self,
@@ -175,11 +160,10 @@ class MakeOverY(Maker):
         ambient: Any = None,
     ) -> Load:
         """A load over the slider's position; see `help(desaxe.over_Y)`."""
-        piston = piston_of("over_Y", area, bore, ambient, self.units)
+        piston = self.piston(area, bore, ambient)
         if callable(positions) or derivative is not None:
             return load_over("over_Y", "Y", (positions, outward, derivative), self.units, piston)
-        columns = _columns("over_Y", "positions", positions, outward, inward, self.units, piston)
-        return table_over_Y(*columns, kind)
+        return table_over_Y(*self.columns(positions, outward, inward, piston=piston), kind=kind)
 
     def read(
         self,
@@ -196,13 +180,12 @@ class MakeOverY(Maker):
 
         Y, value are the units of the columns; the form of the file is that of `over_theta.read`.
         """
-        piston = piston_of("over_Y.read", area, bore, ambient, self.units)
-        columns = _columns_of_file(self, path, "Y", Y, value, piston)
-        with naming(path):
-            return table_over_Y(*columns, kind)
+        more = {"kind": kind, "area": area, "bore": bore, "ambient": ambient}
+        load: Load = self.from_file(path, {"Y": Y, "value": value}, **more)
+        return load
 
 
-class MakeOverStroke(Maker):
+class MakeOverStroke(MakeTable):
     """`over_stroke(distances, outward, inward=None, *, dead_centre)`: a load over the stroke itself.
 
     The die of a press is hit a given way before bottom dead centre, whatever the design: the load is over the
@@ -230,6 +213,7 @@ class MakeOverStroke(Maker):
 
     name = "over_stroke"
     takes = "distances, outward, inward=None, *, dead_centre"
+    places = "distances"
 
     def __call__(
         self,
@@ -245,13 +229,13 @@ class MakeOverStroke(Maker):
         ambient: Any = None,
     ) -> Load:
         """A load over the distance from a dead centre; see `help(desaxe.over_stroke)`."""
-        piston = piston_of("over_stroke", area, bore, ambient, self.units)
+        piston = self.piston(area, bore, ambient)
         if callable(distances) or derivative is not None:
             centre = f"Y_{dead_centre_of(dead_centre)}"
             functions = distances, outward, derivative
             return load_over("over_stroke", "Y", functions, self.units, piston, centre)
-        columns = _columns("over_stroke", "distances", distances, outward, inward, self.units, piston)
-        return table_over_stroke(*columns, kind, dead_centre)
+        columns = self.columns(distances, outward, inward, piston=piston)
+        return table_over_stroke(*columns, kind=kind, dead_centre=dead_centre)
 
     def read(
         self,
@@ -269,61 +253,11 @@ class MakeOverStroke(Maker):
 
         distance, value are the units of the columns; the form of the file is that of `over_theta.read`.
         """
-        piston = piston_of("over_stroke.read", area, bore, ambient, self.units)
-        columns = _columns_of_file(self, path, "distance", distance, value, piston)
-        with naming(path):
-            return table_over_stroke(*columns, kind, dead_centre)
+        more = {"kind": kind, "dead_centre": dead_centre, "area": area, "bore": bore, "ambient": ambient}
+        load: Load = self.from_file(path, {"distance": distance, "value": value}, **more)
+        return load
 
 
-attach_operators()
 over_theta = MakeOverTheta()
 over_Y = MakeOverY()
 over_stroke = MakeOverStroke()
-
-
-def _columns(
-    name: str,
-    places: str,
-    x: Any,
-    outward: Any,
-    inward: Any,
-    units: UnitSystem | None,
-    piston: Piston | None,
-) -> tuple[Column, list[Column]]:
-    """Positions or distances, and the values for each way."""
-    x, outward = places_and_values(x, outward)
-    at = column_of(f"{name}: {places}", x, ("m",), _unit(units, "Y"))
-    farthest = max(at.values, key=abs, default=0.0)
-    if at.plain and isinstance(x, (list, tuple)) and abs(farthest) > FARTHEST:
-        warn(
-            f"{name}: {places} up to {farthest:.6g} m, almost surely a slip: write "
-            f'"{farthest:.6g} mm"; plain numbers are metres',
-            UnitWarning,
-            stacklevel=5,
-        )
-    if outward is None:
-        raise TypeError(f"{name}: outward is missing: the load at each of the {places}")
-    ways = [("outward", outward), *([] if inward is None else [("inward", inward)])]
-    force = force_unit(units)
-    return at, [forces_of(f"{name}: {way}", values, ("N",), force, piston, units) for way, values in ways]
-
-
-def _columns_of_file(
-    maker: Maker, path: Any, places: str, unit: str | None, value: str | None, piston: Piston | None
-) -> tuple[Column, list[Column]]:
-    """The columns of a file: positions or distances, outward and, where there are numbers, inward."""
-    ways = [(way, value, *_values(("N",), piston, maker.units)) for way in ("outward", "inward")]
-    place, *columns = maker.columns_of_file(path, (places, unit, ("m",), maker.unit("Y")), *ways)
-    return place, columns if piston is None else [piston.column(column) for column in columns]
-
-
-def _values(
-    units: tuple[str, ...], piston: Piston | None, system: UnitSystem | None
-) -> tuple[tuple[str, ...], Conversion | None]:
-    """The SI units of a column, and the unit of plain numbers: of pressures where there is a piston."""
-    return (units, force_unit(system)) if piston is None else (("Pa",), pressure_unit(system))
-
-
-def _unit(units: UnitSystem | None, name: str) -> Conversion | None:
-    """The unit of plain numbers of a name; None where none is given."""
-    return None if units is None else units.of(name)

@@ -1,33 +1,36 @@
-"""Users' functions in a machine's units, as functions in SI units."""
+"""Users' functions in a machine's units, or of pressures, as functions in SI units."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from inspect import Parameter, Signature
 from typing import Any
 
-from ..mechanism.quantity_units import UnitSystem
+from ..mechanism.quantity_units import SI, UnitSystem
 from ..units.system import Conversion
 from .along_motion import FunctionOfMotion
 from .arguments import by_position, of_one
-from .pressure import Piston, pressure_unit
+from .function import name_of
+from .pressure import Piston
 
 
 @dataclass(frozen=True)
 class Converted:
     """A function in other units, called with SI units, as one in SI units.
 
-    units  of the arguments
+    units   of the arguments
+    piston  on which its values are pressures
     """
 
     function: Callable[..., Any]
     units: tuple[Conversion, ...]
     value: Conversion
     arguments: tuple[str, ...] = ("theta",)
+    piston: Piston | None = None
 
     @property
     def __name__(self) -> str:
         """The name of the function."""
-        return getattr(self.function, "__name__", type(self.function).__name__)
+        return name_of(self.function)
 
     @property
     def __signature__(self) -> Signature:
@@ -36,7 +39,8 @@ class Converted:
     def __call__(self, *columns: Any) -> Any:
         """The value in SI units."""
         shown = (unit.shown(x) for unit, x in zip(self.units, columns, strict=True))
-        return self.value.to_si(self.function(*shown))
+        value = self.value.to_si(self.function(*shown))
+        return value if self.piston is None else self.piston.force(value)
 
 
 def functions_over(
@@ -61,12 +65,14 @@ def functions_over(
         raise TypeError(f"{name}: derivative = {derivative!r}: expected a function of {column}")
     function = of_one(name, function)
     slope = None if derivative is None else of_one(name, derivative)
-    if units is not None:
-        value, own = force_unit(units) or Conversion("N"), units.of(column)
-        value = value if piston is None else pressure_unit(units) or Conversion("Pa")
-        function = Converted(function, (own,), value)
-        slope = None if slope is None else Converted(slope, (own,), value.per([own]))
-    return (function, slope) if piston is None else piston.functions(function, slope)
+    if units is None and piston is None:
+        return function, slope
+    own = (units or SI).of(column)
+    value = force_unit(units or SI) if piston is None else (units or SI).of_unit("Pa")
+    if slope is not None:
+        against_vacuum = None if piston is None else replace(piston, ambient=0.0)
+        slope = Converted(slope, (own,), value.per([own]), piston=against_vacuum)
+    return Converted(function, (own,), value, piston=piston), slope
 
 
 def load_over(
@@ -110,10 +116,8 @@ def _signature(arguments: Sequence[str]) -> Signature:
     return Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in arguments])
 
 
-def force_unit(units: UnitSystem | None) -> Conversion | None:
+def force_unit(units: UnitSystem) -> Conversion:
     """The unit of plain forces; ValueError where F_X and F_Y have different ones."""
-    if units is None:
-        return None
     one, other = units.of("F_X"), units.of("F_Y")
     if one != other:
         raise ValueError(

@@ -8,12 +8,13 @@ from ..support.shown import with_unit
 from .table import Table
 
 
-def told(place: str, ways: Sequence[Table], kind: str, unit: str | None, conversion: Any = None) -> str:
-    """A table in a line: kind and range of its curve, and that of its points where the curve goes beyond."""
+def told(load: Any, conversion: Any = None) -> str:
+    """Tables in a line: kind and range of each curve, and of its points where the curve goes beyond."""
+    unit = load.unit or "1"
     if conversion is not None and conversion.si != 1:
         unit = conversion.unit
-    ranges = ", inward ".join(_range(way, unit or "1", conversion) for way in ways)
-    return f"<load over {place}: {len(ways[0].knots)} points, {kind}, {ranges}>"
+    ranges = ", inward ".join(_range(way, unit, conversion) for way in load.tables)
+    return f"<load over {load.place}: {len(load.tables[0].knots)} points, {load.kind}, {ranges}>"
 
 
 def _range(way: Table, unit: str, conversion: Any) -> str:

@@ -32,6 +32,7 @@ SHARE, MOST_PERCENT = Typical(3.0, inf, '"{number:.6g} %"'), 100.0
 _UNITS = {row.name: row.unit for row in (*INPUTS.values(), *OF_SHAFTS.values())} | OTHERS
 KINDS = {
     **{name: _BY_UNIT[unit] for name, unit in _UNITS.items() if unit in _BY_UNIT},
+    "Y": SIZE,
     "mu": Typical(10.0, 100.0, "{hundredth:.6g}"),
     "breakdown_slip": SHARE,
 }

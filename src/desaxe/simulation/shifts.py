@@ -123,7 +123,7 @@ class Shifts:
             self.notes.append(f"NaN where loads of a sum jump at one angle, theta = {theta:.6g}")
             return np.full(len(self.wrt), nan)
         if isinstance(curve, PositionCurve):
-            return self._by_lengths(curve.load.kept, theta)
+            return self._by_lengths(curve.load.needs, theta)
         return self.tangents.by_lengths(curve.moves(theta))
 
     def _bends(self, curve: Curve, theta: float) -> bool:

@@ -149,7 +149,7 @@ class Cycle:
         """A quantity, or two whose difference stays the same at angles of jumps, and these, in rows."""
         every = members_of(self.loads.values())
         loads = [load for load in every if isinstance(load, OverY) and load.jumps]
-        meeting = [(load.kept, crossings(load, load.jumps, self.lengths, self.branch)) for load in loads]
+        meeting = [(load.needs, crossings(load, load.jumps, self.lengths, self.branch)) for load in loads]
         groups = [(("Y_wrt_theta",), dead_centres(self.lengths)), *meeting]
         return [*((kept, repeated(angles, *self.ends)) for kept, angles in groups), *self._conditions(names)]
 
