@@ -99,6 +99,9 @@ def test_other_functions_are_refused(load, message):
             "wrt: no parameter 'F_Y.stif'.*F_Y.stiffness",
         ),
         (lambda: dx.Machine(units="mm, N", F_Y=dx.spring(4e3, 0.1)), "machine.spring"),
+        (lambda: dx.Machine(units="mm, N", F_Y=5 - dx.spring(4e3, 0.1)), "machine.spring"),
+        (lambda: dx.Machine(units="mm, N", F_Y=dx.over_Y(["1 m", "2 m"], ["0 N", "9 N"])
+                            + dx.over_Y([1, 2], [3, 4])), "machine.over_Y"),
     ],
 )  # fmt: skip
 def test_what_makers_refuse(make, message):

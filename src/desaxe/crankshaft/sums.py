@@ -46,7 +46,7 @@ TINY = 1e-150  # rad/s, in place of rest: slopes by omega^2 stay finite
 
 
 class ShaftSlider(NamedTuple):
-    """A slider: its inputs in SI units, its angles [rad] and its distance from the middle [m], None if unknown."""
+    """A slider: its inputs in SI units, its angles [rad] and, if known, its distance from the middle [m]."""
 
     inputs: Mapping[str, Any]
     phase: Any = 0.0
