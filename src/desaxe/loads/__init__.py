@@ -1,6 +1,6 @@
 """Loads over the crank angle or the slider's position: tables, files and functions.
 
-load       the loads: over theta or Y, from a table
+load       what every load is: columns, value, derivatives; tables over theta or Y
 arguments  which arguments a user's function is called with, by their names
 function   a user's function of theta as a load
 table      tables as piecewise cubics
@@ -11,9 +11,10 @@ cells      rows of cells of texts, workbooks and frames, and the numbers of thei
 column_files  columns of files and frames by position or name, with the units of their headings
 made       loads made of columns, checked
 maker      public calls that make loads and motors, in SI units or a machine's
+of_columns  those that make tables of columns, from lists or a file
 arithmetic  multiples and sums of loads, loads shifted by an angle
-along_motion  loads over columns of the motion: functions, springs, dampers, speeds, sums of loads
-elements   `spring`, `damper`, `over_V`
+along_motion  loads over columns of the motion: functions, tables over one column, sums of loads
+elements   springs and dampers; `spring`, `damper`, `over_V`
 units      users' functions in a machine's units
 pressure   pressures on a piston as forces
 tabulated  `over_theta`, `over_Y`, `over_stroke`: loads from lists, files and functions

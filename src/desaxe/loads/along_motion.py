@@ -193,7 +193,7 @@ class SumOfLoads(OfMotion):
 
     @property
     def plain(self) -> tuple[str, ...]:  # type: ignore[override]
-        """What was given as plain numbers, of all."""
+        """The kinds of plain numbers of all members."""
         return tuple(dict.fromkeys(place for load in self.members for place in load.plain))
 
     @property

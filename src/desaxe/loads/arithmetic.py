@@ -199,7 +199,7 @@ def _sum(one: Table, other: Table, kind: str) -> Table | None:
 
 
 def _turned(table: Table, lag: float, times: int = 1) -> Table:
-    """A periodic table that lags by an angle, over so many of its periods, with knots from 0 on."""
+    """A periodic table that lags by an angle, over some of its periods, with knots from 0 on."""
     period = table.period or inf
     knots = [(knot + lag) % period for knot in table.knots]
     first = knots.index(min(knots))

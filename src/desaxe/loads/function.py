@@ -88,7 +88,7 @@ class FunctionOverTheta(OverTheta):
 
 
 def name_of(function: Any) -> str:
-    """What a user's function is called, in messages."""
+    """The name of a user's function in messages."""
     return str(getattr(function, "__name__", type(function).__name__))
 
 

@@ -183,7 +183,7 @@ class Load(ABC):
 
     @property
     def place(self) -> str:
-        """What the load is over, in words."""
+        """The column that the load is over, in words."""
         return self.over
 
     def told(self, conversion: "Conversion | None" = None) -> str:

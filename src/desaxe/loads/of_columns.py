@@ -1,4 +1,4 @@
-"""What makes a table of columns: places, and the values there, from lists or from a file."""
+"""Makers of tables from columns: places, and the values there, of lists or a file."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
@@ -47,7 +47,7 @@ class MakeTable(Maker):
         return [x, *columns]
 
     def from_file(self, source: Any, units: Mapping[str, str | None], **options: Any) -> Any:
-        """What the call makes of columns of a file or a frame; units: of the places, and of the values."""
+        """The result of the call for columns of a file or a frame; units: of places and values."""
         with IMPORTS:
             from .column_files import Requested, read_columns
 
