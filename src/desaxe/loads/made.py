@@ -24,7 +24,7 @@ EQUAL = 1e-9  # of the largest value: what differs by less is the same
 
 
 @dataclass
-class Points:
+class TablePoints:
     """The points of a table, and what a message calls them.
 
     quantity  that the places x are
@@ -101,7 +101,7 @@ def table_over_theta(
     units  of a warning
     """
     x, y, period = angles.values, values.values, turn.values[0]
-    points = Points("over_theta", "angles", "theta", kind, x, [y])
+    points = TablePoints("over_theta", "angles", "theta", kind, x, [y])
     points.check()
     span = x[-1] - x[0]
     if span > (1.0 + CLOSED) * period:
@@ -170,7 +170,7 @@ def table_over_V(speeds: Column, forces: Column, *, kind: str) -> Load:
 
 def ascending_table(name: str, quantity: str, speeds: Column, values: Column, kind: str) -> Table:
     """A table over ascending speeds; ValueError where the columns are none."""
-    points = Points(name, "speeds", quantity, kind, speeds.values, [values.values])
+    points = TablePoints(name, "speeds", quantity, kind, speeds.values, [values.values])
     points.check(SMOOTH, jumps=False)
     return points.held()[0]
 
@@ -187,7 +187,7 @@ def _both_ways(
     """The tables outward and inward, over ascending places."""
     descends = x.values and x.values[0] > x.values[-1]
     at, *columns = (column.values[:: -1 if descends else 1] for column in (x, *ways))
-    points = Points(name, places, "Y", kind, at, columns)
+    points = TablePoints(name, places, "Y", kind, at, columns)
     points.check(order="ascend or descend")
     outward, *inward = points.held()
     return outward, inward[0] if inward else None
