@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import desaxe as dx
-from desaxe.sweeps.workers import VersionError, check_version, run_all
+from desaxe.sweeps.sweep import VersionError, check_version, run_all
 
 INPUTS = {"theta": np.linspace(0.0, 6.0, 60), "ec": np.linspace(-0.1, 0.3, 20), "AB": 0.1, "omega0": 3.0}
 NAMES = ["V_C", "a_C"]

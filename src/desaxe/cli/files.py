@@ -95,7 +95,8 @@ def _sweep(options: argparse.Namespace) -> int:
     from ..scenes.stores.files import write
     from ..support.memory import require
     from ..support.written import require_path
-    from ..sweeps.workers import VersionError
+    from ..sweeps.request import RunOptions
+    from ..sweeps.sweep import VersionError
 
     content = scene(options.scene).content
     store, netcdf = options.store or content.store, options.netcdf and Path(options.netcdf)
@@ -105,12 +106,11 @@ def _sweep(options: argparse.Namespace) -> int:
         if netcdf.suffix != ".nc":
             raise UsageError(f"--netcdf {printable(netcdf)}: its name must end in .nc")
         require_path(netcdf, options.overwrite)
-    chosen = {name: getattr(options, name) for name in ("store", "memory", "overwrite")}
+    chunks = _chunks(options.chunks)
     try:
         with _client(options) as client:
-            dataset = sweep_content(
-                content, tell=print, chunks=_chunks(options.chunks), client=client, **chosen
-            )
+            run = RunOptions(options.store, options.overwrite, client, tell=print)
+            dataset = sweep_content(content, run, chunks=chunks, memory=options.memory)
     except VersionError as error:
         raise UsageError(str(error)) from None
     shape = " x ".join(f"{name} ({size})" for name, size in dataset.sizes.items())

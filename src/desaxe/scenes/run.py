@@ -10,6 +10,7 @@ from ..evaluation.in_units import in_units
 from ..mechanism.quantity_units import UnitSystem
 from ..support.progress import Progress, Steps
 from ..support.shown import printable
+from ..sweeps.request import RunOptions
 from .content import Content, Run
 from .document.page import Page, write_page
 from .parts.grid import blocks_of, sweep_content, values_of_grid
@@ -49,7 +50,8 @@ def compute(content: Content, steps: Steps, overwrite: bool) -> Run:
     if content.store is not None:
         steps.next(f"sweeping into {content.store}")
         try:  # the steps of the run are shown, not the points of the sweep
-            dataset = sweep_content(content, watch=lambda done, total, what: None, overwrite=overwrite)
+            options = RunOptions(overwrite=overwrite, watch=lambda done, total, what: None)
+            dataset = sweep_content(content, options)
         except FAILURES as error:
             failures = (_failure(content.store, error),)
     elif content.outputs:

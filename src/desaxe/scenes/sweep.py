@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ..mechanism.keywords import with_known_keywords
 from ..mechanism.own import using
 from ..support.progress import Progress
+from ..sweeps.request import RunOptions, SweepRequest
 from ..sweeps.sweep import run_sweep
 from .parts.grid import sweep_content
 from .scene import Scene
@@ -68,21 +69,16 @@ def sweep(
 
     See docs/choose.md: which call for which question.
     """
-    options: dict[str, Any] = {
-        "store": store, "memory": memory, "overwrite": overwrite, "client": client,
-        "watch": progress,
-        "tell": _tell if progress is None and sys.stderr.isatty() else None,
-    }  # fmt: skip
+    tell = _tell if progress is None and sys.stderr.isatty() else None
+    options = RunOptions(store, overwrite, client, progress, tell)
     if isinstance(names, (Scene, Mapping, PathLike)) or (isinstance(names, str) and names.endswith(".toml")):
         if inputs or reduce is not None or peaks:
             raise TypeError("sweep: a scene has its own inputs, [reduce] and [[peak]]; give none beside it")
         there = names if isinstance(names, Scene) else scene_of(names)
         with using(there.content.definitions):
-            return sweep_content(there.content, chunks=chunks, threads=threads, **options)
-    return run_sweep(
-        names, inputs, chunks=chunks, branch=branch, accuracy=accuracy, threads=threads, reduce=reduce,
-        peaks=peaks, **options,
-    )  # fmt: skip
+            return sweep_content(there.content, options, chunks=chunks, threads=threads, memory=memory)
+    request = SweepRequest(names, inputs, branch, accuracy, threads, reduce, peaks, chunks, memory)
+    return run_sweep(request, options)
 
 
 def _tell(line: str) -> None:

@@ -1,8 +1,8 @@
 """The Zarr store of a sweep: a chunk is whole or absent, whatever stops the writer.
 
 Metadata and coordinates are written beside the store's path and put there in one step; zarr renames a chunk
-into its place, and its checksum tells whether it is whole. A store whose metadata or coordinates say
-something else is named and never passed: it would be read as something that no sweep computed.
+into its place, and its checksum tells whether it is whole. A store whose metadata or coordinates are others
+is refused by their names: it would be read as something that no sweep computed.
 """
 
 import json
@@ -32,7 +32,6 @@ from .request import Sweep, differences
 with put_off(), explained("a sweep"):
     import zarr
     from zarr.codecs import Crc32cCodec, ZstdCodec
-    from zarr.core.buffer import Buffer
     from zarr.storage import LocalStore, MemoryStore
 
 if TYPE_CHECKING:
@@ -47,37 +46,25 @@ SEVERAL = 3  # differences that are named
 DAMAGED = (ValueError, RuntimeError, OSError, LookupError, TypeError, AttributeError)  # what zarr raises
 
 
-def zarr_files(parts: "Mapping[str | None, xr.Dataset]", **options: Any) -> dict[str, Buffer]:
-    """The files of a Zarr store by their keys, from the Dataset of each group; None is the store itself."""
-    files: dict[str, Buffer] = {}
-    store = MemoryStore(files)
+def write_groups(store: Any, parts: "Mapping[str | None, xr.Dataset]", **options: Any) -> None:
+    """Write the Dataset of each group to a Zarr store, or into a folder; None is the store itself."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=CONSOLIDATED)
         for group, part in parts.items():
             part.to_zarr(store, mode="a", group=group, consolidated=False, zarr_format=3, **options)
-        zarr.consolidate_metadata(store)
-    return files
-
-
-def put(root: Path, files: Mapping[str, Buffer]) -> None:
-    """Write the files of a store into a staging folder."""
-    for key, data in files.items():
-        (root / key).parent.mkdir(parents=True, exist_ok=True)
-        (root / key).write_bytes(data.to_bytes())
+        zarr.consolidate_metadata(store)  # what xarray looks for when it opens the store
 
 
 def put_group(root: Path, name: str, part: "xr.Dataset") -> None:
     """Put a group into an existing store, whole; it replaces one of that name."""
     with staging(root) as folder:
-        put(folder, zarr_files({name: part}))
-        swap_in(folder / name, root / name)
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message=CONSOLIDATED)
-        zarr.consolidate_metadata(LocalStore(root))  # what xarray looks for when it opens the store
+        write_groups(str(folder / "new"), {name: part})
+        swap_in(folder / "new" / name, root / name)
+    write_groups(LocalStore(root), {})
 
 
-def _skeleton(sweep: Sweep) -> dict[str, Buffer]:
-    """All files of a store but the chunks that the sweep computes."""
+def _write_skeleton(sweep: Sweep, store: Any) -> None:
+    """Write all of a store but the chunks that the sweep computes."""
     template, chunk = sweep.template, sweep.layout.chunk
     encoding = {
         str(name): {
@@ -88,7 +75,7 @@ def _skeleton(sweep: Sweep) -> dict[str, Buffer]:
         for name, variable in template.variables.items()
     }  # fmt: skip
     labelled = template.assign_attrs({**sweep.identity, CHUNKS: json.dumps(chunk), STATE: "incomplete"})
-    return zarr_files({None: labelled}, compute=False, encoding=encoding, safe_chunks=False)
+    write_groups(store, {None: labelled}, compute=False, encoding=encoding, safe_chunks=False)
 
 
 # ---- the store -----------------------------------------------------------------------------------
@@ -107,7 +94,7 @@ def claimed(sweep: Sweep, root: Path, overwrite: bool) -> Iterator[Sweep]:
             kept = checked(sweep, root, overwrite)
             if kept is None:
                 with _held(root) if root.exists() else nullcontext(), staging(root.parent) as folder:
-                    put(folder / root.name, _skeleton(sweep))
+                    _write_skeleton(sweep, str(folder / root.name))
                     swap_in(folder / root.name, root)
             stack.enter_context(_held(root))
         yield kept or sweep
@@ -134,73 +121,57 @@ def checked(sweep: Sweep, root: Path, overwrite: bool) -> Sweep | None:
             raise FileExistsError(f"{printable(root)}: this is no Zarr store; it is left as it is")
         require_writable(root)
     else:
-        kept, why = _compared(sweep, root, there)
-        if kept is not None and not (overwrite and kept.layout != sweep.layout):
-            return kept
-        if not overwrite:
-            raise FileExistsError(f"{printable(root)}: {why}. overwrite=True replaces it")
+        try:
+            resumed = _resumed(sweep, root, there)
+            if not overwrite or resumed.layout == sweep.layout:
+                return resumed
+        except DAMAGED as error:
+            if not overwrite:
+                why = " ".join(str(error).split())
+                raise FileExistsError(f"{printable(root)}: {why}. overwrite=True replaces it") from None
     sweep.layout.require_memory()
     require_disk(sweep, root, sweep.plan.bytes)
     return None
 
 
-def _compared(sweep: Sweep, root: Path, there: Mapping[str, Any]) -> tuple[Sweep | None, str]:
-    """The sweep with the chunks of its store; None and why not for a store of another one."""
+def _resumed(sweep: Sweep, root: Path, there: Mapping[str, Any]) -> Sweep:
+    """The sweep with the chunks of its store; one of DAMAGED says why for the store of another one."""
     other = differences(there, sweep.identity) if "request" in there else ["no sweep wrote it"]
     if other:
-        return None, f"a store of another sweep: {_several(other)}"
-    try:
-        kept = sweep._replace(layout=sweep.layout.cut(there.get(CHUNKS)))
-        changed = _changes(kept, root)
-    except DAMAGED as error:
-        kept, changed = sweep, [" ".join(str(error).split())]
-    return (None, f"changed since a sweep wrote it: {_several(changed)}") if changed else (kept, "")
+        raise ValueError(f"a store of another sweep: {_several(other)}")
+    resumed = sweep._replace(layout=sweep.layout.cut(there.get(CHUNKS)))
+    changed = _changed(resumed, root)
+    if changed:
+        raise ValueError(f"changed since a sweep wrote it: {_several(changed)}")
+    return resumed
 
 
 def _several(lines: Sequence[str]) -> str:
     return "; ".join(lines[:SEVERAL]) + ("; ..." if len(lines) > SEVERAL else "")
 
 
-def _changes(sweep: Sweep, root: Path) -> list[str]:
-    """The differences of metadata and coordinates between a store and its sweep; raises one of DAMAGED."""
-    files = _skeleton(sweep)
+def _changed(sweep: Sweep, root: Path) -> list[str]:
+    """The names whose metadata, or values of a coordinate, are not those that the sweep writes."""
+    files: dict[str, Any] = {}
+    _write_skeleton(sweep, MemoryStore(files))
     for key in files:
         if kind_of(root / key):  # a pipe would be waited for
             raise ValueError(f"{key} is {kind_of(root / key)}")
-    found: list[str] = []
+    names: dict[str, None] = {}
     for consolidated in (True, False):  # the copy that xarray reads, and the one of each array
         here, there = (
             zarr.open_group(store, mode="r", zarr_format=3, use_consolidated=consolidated)
             for store in (MemoryStore(files), LocalStore(root, read_only=True))
         )
-        found += _different("", dict(there.attrs), {k: v for k, v in here.attrs.items() if k != STATE})
+        same = all(there.attrs.get(key) == value for key, value in here.attrs.items() if key != STATE)
+        names |= {} if same else {"the attributes": None}
         for name, array in here.arrays():
             other: Any = there[name]
-            lines = _different(f"{name}.", _metadata(other), _metadata(array))
-            if not lines and name in sweep.template.coords:
+            same = other.metadata.to_dict() == array.metadata.to_dict()
+            if same and name in sweep.template.coords:
                 same = np.array_equal(other[...], np.asarray(array[...]), equal_nan=True)
-                lines = [] if same else [f"values of {name}"]
-            found += lines
-    return [*dict.fromkeys(found)]
-
-
-def _metadata(array: Any) -> dict[str, Any]:
-    facts: dict[str, Any] = array.metadata.to_dict()
-    attributes = facts.pop("attributes")
-    return facts | {f"attributes.{key}": value for key, value in attributes.items()}
-
-
-def _different(where: str, there: Mapping[str, Any], here: Mapping[str, Any]) -> list[str]:
-    """The differences of facts, one by one; the group may have attributes that others added."""
-    return [
-        f"{where}{key} is {_text(there.get(key))} there and {_text(here.get(key))} here"
-        for key in dict.fromkeys((*here, *(there if where else ())))
-        if there.get(key) != here.get(key)
-    ]
-
-
-def _text(value: Any) -> str:
-    return json.dumps(value, default=str)
+            names |= {} if same else {name: None}
+    return [*names]
 
 
 def attributes(root: Path) -> dict[str, Any] | None:
@@ -260,7 +231,7 @@ def absent(sweep: Sweep, root: Path) -> int:
     """The number of chunks that are not in the store; an existing one may still be damaged."""
     return sum(
         any(not _chunk(root, name, part).is_file() for part in block.parts for name in part.step.outputs)
-        for block in sweep.blocks()
+        for block in sweep.plan.blocks(sweep.layout.chunk)
     )
 
 

@@ -1,85 +1,71 @@
-"""A grid of any size, written chunk by chunk to a Zarr store in bounded memory; resumable."""
+"""A grid of any size, written chunk by chunk to a Zarr store in bounded memory; resumable.
+
+The chunks are computed on threads of this process or on a Dask cluster, a bounded number of them at a time.
+"""
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, ThreadPoolExecutor, wait
+from contextlib import nullcontext
 from importlib import import_module
-from os import PathLike
+from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..evaluation.plan import Block
+from ..mechanism.program import digest
 from ..runtime.threads import available
 from ..support.extras import needed
 from ..support.files import as_path
 from ..support.memory import bytes_of, size_text
-from ..support.progress import Count, Portions, Progress, progress_bar
+from ..support.progress import Portions, progress_bar
 from ..support.shown import printable
-from .request import Sweep, SweepRequest, sweep_of
-from .store import absent, claimed, finish, free_at, open_store, require_disk
-from .workers import Arrays, BlockWork, require_workers, run_all
+from ..support.version import version as desaxe_version
+from .request import RunOptions, Sweep, SweepRequest, sweep_of
+from .store import absent, claimed, finish, free_at, is_whole, open_store, require_disk, write_chunk
 
 if TYPE_CHECKING:
     import xarray as xr
 
-
-class RunOptions(NamedTuple):
-    """The options of a run: Dask client or threads, callbacks."""
-
-    client: Any
-    threads: int | None
-    watch: Progress | None
-    tell: Callable[[str], None] | None
+T = TypeVar("T")
+R = TypeVar("R")
+Arrays = list[tuple[tuple[slice, ...], dict[str, NDArray[Any]]]]  # the region of each, and those in it
 
 
-def run_sweep(
-    names: str | Sequence[str],
-    inputs: Mapping[str, Any],
-    *,
-    store: str | PathLike[str] | None,
-    chunks: Any,
-    memory: int | str | None,
-    overwrite: bool = False,
-    client: Any = None,
-    branch: int,
-    accuracy: Any,
-    threads: int | None,
-    reduce: Any,
-    peaks: Any,
-    watch: Progress | None = None,
-    tell: Callable[[str], None] | None = None,
-) -> "xr.Dataset":
-    """The body of `desaxe.sweep` for names and inputs."""
+def run_sweep(request: SweepRequest, options: RunOptions) -> "xr.Dataset":
+    """The body of `desaxe.sweep`."""
     for module in ("xarray", "dask", "zarr"):
         with needed("sweep", "scale"):
             import_module(module)
-    limit = bytes_of(memory)
-    if client is not None:
-        require_workers(client)
-    options = RunOptions(client, threads, watch, tell)
-    request = SweepRequest(names, inputs, branch, accuracy, threads, reduce, peaks, chunks, limit)
-    if store is not None:
-        root = Path(os.path.abspath(as_path("store", store)))
-        return _stored(sweep_of(request), root, overwrite, options)
-    if reduce is None and (names or not peaks):
+    request = request._replace(memory=bytes_of(request.memory))
+    if options.client is not None:
+        require_workers(options.client)
+    if options.store is not None:
+        root = Path(os.path.abspath(as_path("store", options.store)))
+        return _stored(sweep_of(request), root, request.threads, options)
+    if request.reduce is None and (request.names or not request.peaks):
         raise TypeError('sweep: store= is missing: where the grid goes, such as "press.zarr"')
-    return _in_memory(sweep_of(request), options)
+    return _in_memory(sweep_of(request), request.threads, options)
 
 
-def _stored(sweep: Sweep, root: Path, overwrite: bool, options: RunOptions) -> "xr.Dataset":
+def _stored(sweep: Sweep, root: Path, threads: int | None, options: RunOptions) -> "xr.Dataset":
     """Run a sweep into a store, or resume one that was stopped; the opened Dataset."""
-    with claimed(sweep, root, overwrite) as sweep:
+    with claimed(sweep, root, options.overwrite) as sweep:
         layout, total = sweep.layout, sweep.layout.chunks
         left = absent(sweep, root)
         if left:
             layout.require_memory()
             require_disk(sweep, root, -(-sweep.plan.bytes * left // total))
             if options.tell is not None:
-                options.tell(_announcement(sweep, free_at(root)))
+                plan = sweep.plan
+                variables = f"{len(sweep.template.data_vars)} variables, at most {size_text(plan.bytes)}"
+                chunks = f"{total:,} chunks of {layout.shape}; {size_text(free_at(root))} free"
+                options.tell(f"{plan.points:,} points, {variables} in {chunks}")
         try:
-            for _ in _run(sweep, root, options):
+            for _ in _run(sweep, root, threads, options):
                 pass
         except KeyboardInterrupt as stopped:
             kept = f"{total - absent(sweep, root):,} of {total:,} chunks are kept"
@@ -89,58 +75,110 @@ def _stored(sweep: Sweep, root: Path, overwrite: bool, options: RunOptions) -> "
     return open_store(root)
 
 
-def _in_memory(sweep: Sweep, options: RunOptions) -> "xr.Dataset":
+def _in_memory(sweep: Sweep, threads: int | None, options: RunOptions) -> "xr.Dataset":
     """Run a sweep whose result fits into memory, a reduced one; its Dataset."""
     template = sweep.template
     whole = {str(n): np.empty(v.shape, v.dtype) for n, v in template.data_vars.items()}
     sweep.layout.require_memory()
-    for arrays in _run(sweep, None, options):
+    for arrays in _run(sweep, None, threads, options):
         for region, values in arrays:
             for name, array in values.items():
                 whole[name][region] = array
     return template.assign({n: template[n].copy(data=array) for n, array in whole.items()})
 
 
-def _announcement(sweep: Sweep, free: int) -> str:
-    plan, layout = sweep.plan, sweep.layout
-    return (
-        f"{plan.points:,} points, {len(sweep.template.data_vars)} variables, at most {size_text(plan.bytes)} "
-        f"in {layout.chunks:,} chunks of {layout.shape}; {size_text(free)} free"
-    )
-
-
-def _run(sweep: Sweep, root: Path | None, options: RunOptions) -> Iterator[Arrays]:
+def _run(sweep: Sweep, root: Path | None, threads: int | None, options: RunOptions) -> Iterator[Arrays]:
     """Compute the chunks that a store lacks, or all of them; the arrays of each as they come, counted."""
-    executor, size, threads = _executor(sweep, options)
-    work = BlockWork(root, threads, sweep.identity["version"], sweep.identity["digest"])
-    with _counted(sweep.plan.points, options.watch) as count, executor:
-        for block, arrays in run_all(executor, work.run, sweep.blocks(), 2 * size):
-            count(sweep.plan.points_in(block), arrays is not None)
+    executor: Executor
+    if options.client is not None:
+        executor, each = options.client.get_executor(pure=False), 1
+        size = max(1, sum(options.client.nthreads().values()))
+    else:
+        cores = threads or available()
+        size = min(cores, sweep.layout.at_once)
+        executor, each = ThreadPoolExecutor(size, thread_name_prefix="desaxe-sweep"), max(1, cores // size)
+    work = BlockWork(root, each, sweep.identity["version"], sweep.identity["digest"])
+    shown = progress_bar(unit="points") if options.watch is None else nullcontext(options.watch)
+    with shown as watch, executor:
+        portions = Portions(sweep.plan.points, "sweep", watch)
+        for block, arrays in run_all(executor, work.run, sweep.plan.blocks(sweep.layout.chunk), 2 * size):
+            portions.add(sweep.plan.points_in(block), arrays is not None)
             yield arrays or []
 
 
-def _executor(sweep: Sweep, options: RunOptions) -> tuple[Executor, int, int]:
-    """An executor of the chunks, how many run at once, and the threads of each."""
-    if options.client is not None:
-        executor = options.client.get_executor(pure=False)
-        return executor, max(1, sum(options.client.nthreads().values())), 1
-    cores = options.threads or available()
-    size = min(cores, sweep.layout.at_once)
-    return ThreadPoolExecutor(size, thread_name_prefix="desaxe-sweep"), size, max(1, cores // size)
+# ---- work on threads and workers --------------------------------------------------------------------
 
 
-@contextmanager
-def _counted(points: int, watch: Progress | None) -> Iterator[Count]:
-    """Counts points that are computed or were there, for a callback, or in a bar on the terminal."""
-    if watch is None:
-        with progress_bar(unit="points") as bar:
-            yield Portions(points, "sweep", bar).add
-        return
-    done = 0
+class VersionError(RuntimeError):
+    """A worker has another desaxe than the one that sent it work."""
 
-    def count(more: int, computed: bool) -> None:
-        nonlocal done
-        done += more
-        watch(done, points, "writing" if computed else "reading")
 
-    yield count
+class BlockWork(NamedTuple):
+    """The work on a block, written to the store `root`, or returned to the caller where that is None."""
+
+    root: Path | None
+    threads: int
+    version: str
+    digest: str
+
+    def run(self, block: Block) -> Arrays | None:
+        """Compute the chunks of a block that the store lacks; None if it lacks none."""
+        check_version(self.version, self.digest)
+        back: Arrays | None = None
+        for part in block.parts:
+            missing = [n for n in part.step.outputs if self.root is None or not is_whole(self.root, n, part)]
+            if missing:
+                back = back or []
+                values = part.step.compute(block.values, self.threads)
+                if self.root is None:
+                    back.append((part.region, values))
+                    continue
+                for name in missing:
+                    write_chunk(self.root, name, part, values.pop(name))
+        return back
+
+
+def check_version(version: str, program: str) -> None:
+    """Refuse to compute with another version or derivation than the sender's."""
+    if (desaxe_version(), digest()) != (version, program):
+        raise VersionError(
+            f"this worker has desaxe {desaxe_version()}, derivation {digest()[:16]}; "
+            f"the sweep is of desaxe {version}, derivation {program[:16]}"
+        )
+
+
+def require_workers(client: Any) -> None:
+    """Refuse what is no client, a cluster without workers, and by address workers with another desaxe."""
+    with needed("client="):
+        import distributed
+
+    if not isinstance(client, distributed.Client):
+        raise TypeError(f"client = {client!r}: expected a distributed.Client")
+    if not client.nthreads():
+        client.wait_for_workers(1, timeout=30)
+    answers = client.run(check_version, desaxe_version(), digest(), on_error="return")
+    refused = [f"{address}: {error or type(error).__name__}" for address, error in answers.items() if error]
+    if refused:
+        raise VersionError("; ".join(refused))
+
+
+def run_all(
+    executor: Executor, function: Callable[[T], R], tasks: Iterable[T], limit: int
+) -> Iterator[tuple[T, R]]:
+    """Each task with its result, as they come; at most `limit` of them are under way.
+
+    After an error no further task begins, and those that run are waited for.
+    """
+    left = iter(tasks)
+    running = {executor.submit(function, task): task for task in islice(left, limit)}
+    try:
+        while running:
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                result = future.result()
+                task = running.pop(future)
+                running |= {executor.submit(function, task): task for task in islice(left, 1)}
+                yield task, result
+    finally:
+        for future in running:
+            future.cancel()
+        wait(running)

@@ -13,7 +13,7 @@ from ...evaluation.plan import Plan, plan_of
 from ...support.forks import IMPORTS
 from ...support.progress import Steps
 from ...sweeps.peak_step import PeakRequest
-from ...sweeps.request import SweepRequest, sweep_of
+from ...sweeps.request import RunOptions, SweepRequest, sweep_of
 from ..reading.values import Value
 from ..schema import SceneError
 from ..setting import Setting
@@ -85,12 +85,13 @@ def require_store(content: Any, overwrite: bool) -> None:
     checked(sweep_of(request_of(content)), Path(os.path.abspath(content.store)), overwrite)
 
 
-def sweep_content(content: Any, **options: Any) -> "xr.Dataset":
-    """Run the sweep of a scene with options of `run_sweep`; those that are not given come from the scene."""
+def sweep_content(content: Any, options: RunOptions, *, chunks: Any = "auto", **request: Any) -> "xr.Dataset":
+    """Run the sweep of a scene; what is not given comes from the scene."""
     with IMPORTS:  # Zarr, which scenes without a store do without
         from ...sweeps.sweep import run_sweep
 
-    if isinstance(options.get("chunks"), str) and options["chunks"] == "auto":
-        del options["chunks"]
-    given = {name: value for name, value in options.items() if value is not None}
-    return run_sweep(**{**request_of(content)._asdict(), "store": content.store, **given})
+    if not (isinstance(chunks, str) and chunks == "auto"):
+        request["chunks"] = chunks
+    given = {name: value for name, value in request.items() if value is not None}
+    store = content.store if options.store is None else options.store
+    return run_sweep(request_of(content)._replace(**given), options._replace(store=store))

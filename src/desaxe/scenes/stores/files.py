@@ -166,9 +166,9 @@ def _netcdf(path: Path, parts: "Parts") -> None:
 
 def _zarr(path: Path, parts: "Parts") -> None:
     with IMPORTS:
-        from ...sweeps.store import put, zarr_files
+        from ...sweeps.store import write_groups
 
-    put(path, zarr_files(_marked(parts)))
+    write_groups(str(path), _marked(parts))
 
 
 def store_group(path: Path, name: str, part: "xr.Dataset") -> list[Path]:
