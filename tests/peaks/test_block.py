@@ -29,6 +29,7 @@ def test_peaks_in_a_store(tmp_path):
         np.testing.assert_allclose(stored[stem], own["value"], rtol=1e-9)
         np.testing.assert_array_equal(stored[f"{stem}_status"], own["status"])
         np.testing.assert_allclose(stored[f"{stem}_wrt_ec"], own["gradient"]["ec"], rtol=1e-6)
+    assert stored.peak_absmax_a_C_side.dtype == np.int8
     assert stored["peak_min_a_C"].attrs["units"] == "m/s^2"
     assert "margin" in stored
     with pytest.raises(ValueError, match="kind = 'mean' of a_C"):

@@ -297,16 +297,6 @@ def test_where_no_forces_balance_on_the_other_side():
 # ---- what is made of peaks -------------------------------------------------------------------------
 
 
-@pytest.mark.thorough
-def test_sweeps_tell_the_side(tmp_path):
-    lengths = np.array([0.3, 0.299999, 0.31])
-    assert dx.peak("T_in", **PRESS, **LOAD, BC=lengths)["side"].tolist() == [1, 1, 1]
-    swept = dx.sweep([], peaks="T_in", store=tmp_path / "a.zarr", **PRESS, **LOAD, BC=lengths)
-    assert swept.peak_absmax_T_in_side.dtype == np.int8
-    assert swept.peak_absmax_T_in_side.values.tolist() == [1, 1, 1]
-    np.testing.assert_allclose(swept.peak_absmax_T_in, [press_peak(BC) for BC in lengths], rtol=1e-12)
-
-
 def test_a_reduction_tells_on_which_side_its_sample_is():
     at = dx.peak("T_in", **PRESS, **LOAD, BC=0.3)["theta"]
     theta = np.sort(np.append(np.linspace(0, 2 * pi, 361), [at, nextafter(at, 0)]))

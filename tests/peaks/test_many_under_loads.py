@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.peaks.loaded import ValuesUnderLoads
 
 MACHINE = {"AB": 0.1, "BC": 0.35, "omega0": 30.0, "m_slider": 2.0, "m_rod": 1.0}
 LOADS = {
@@ -12,21 +11,6 @@ LOADS = {
     "Y": dx.over_Y([0.27, 0.33, 0.42], [0.0, -100.0, -400.0], [0.0, -10.0, -50.0], kind="step"),
     "stroke": dx.over_stroke([0.0, 0.008, 0.1], [-400.0, -100.0, 0.0], kind="linear", dead_centre="inner"),
 }
-
-
-@pytest.mark.parametrize("over", LOADS)
-def test_the_steps_of_a_search_are_those_of_one_design(over, monkeypatch):
-    calls = []
-    at = ValuesUnderLoads.at
-
-    def counted(self, *args, **more):
-        calls.append(1)
-        return at(self, *args, **more)
-
-    monkeypatch.setattr(ValuesUnderLoads, "at", counted)
-    found = dx.peak("T_in", ec=np.linspace(-0.05, 0.05, 24), F_Y=LOADS[over], **MACHINE)
-    assert found["status"].tolist() == [0] * 24
-    assert len(calls) < 20
 
 
 @pytest.mark.parametrize("over", LOADS)
@@ -46,15 +30,6 @@ def test_each_design_has_the_peak_that_it_has_alone(over, kind):
         for p, slope in alone["gradient"].items():
             np.testing.assert_allclose(every["gradient"][p][row], slope, rtol=1e-7, atol=1e-9, err_msg=p)
     assert every["status"][4] == 4
-
-
-def test_blocks_of_few_designs_change_nothing(monkeypatch):
-    ec = np.linspace(-0.05, 0.05, 7)
-    whole = dx.peak("T_in", ec=ec, F_Y=LOADS["Y"], **MACHINE)
-    monkeypatch.setattr("desaxe.peaks.designs.MOST", 250)
-    cut = dx.peak("T_in", ec=ec, F_Y=LOADS["Y"], **MACHINE)
-    np.testing.assert_allclose(cut["value"], whole["value"], rtol=1e-14)
-    np.testing.assert_array_equal(cut["side"], whole["side"])
 
 
 @pytest.mark.parametrize(

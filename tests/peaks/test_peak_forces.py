@@ -11,43 +11,7 @@ from desaxe.oracle.force_truth import truth
 from tests.effort import cases
 
 ENGINE = {"AB": 0.04, "BC": 0.064, "m_rod": 0.5, "m_slider": 0.8}
-MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
 THETA = np.linspace(0, 2 * np.pi, 100_001)
-RATES = [{**MACHINE, "ec": ec} for ec in (-0.1, 0.03, 0.2)]
-RUBBING = [
-    {**ENGINE, "ec": ec, "mu": mu, "omega0": omega0}
-    for ec, mu, omega0 in ((0.01, 0.0, 251.0), (0.01, 0.1, -251.0), (0.02, 0.5, 251.0), (0.02, 1.0, -251.0))
-]
-SWEPT = [  # names, designs, and how far beyond a sweep a peak may be, of the largest and of the best value
-    *(
-        (name, RATES, 1e-6, 0.0)
-        for name in ("V_C", "a_C", "j_C", "omega_BC", "alpha_BC", "phi", "V_C_wrt_ec")
-    ),
-    ("pressure_angle", RATES, 1e-4, 0.0),  # it has a kink
-    # At jumps and ends, which no sweep hits, the peak is a little beyond it.
-    *((name, RUBBING, 0.0, 1e-3) for name in ("T_in", "N_C")),
-    *(
-        pytest.param(name, RUBBING, 0.0, 1e-3, marks=pytest.mark.thorough)
-        for name in ("F_friction", "F_B_Y", "power_in")
-    ),
-]
-
-
-@pytest.mark.parametrize("kind", ["max", "min", "absmax"])
-@pytest.mark.parametrize(("name", "designs", "of_largest", "of_best"), SWEPT)
-def test_no_sweep_finds_a_better_one(name, designs, of_largest, of_best, kind):
-    """A hundred thousand angles, those where there is no value aside, stay below and come close."""
-    for design in designs:
-        values = dx.evaluate(name, theta=THETA, **design)
-        largest = np.nanmax(np.abs(values))
-        best = {"max": np.nanmax(values), "min": np.nanmin(values), "absmax": largest}[kind]
-        found = dx.peak(name, kind=kind, **design)["value"]
-        beyond = best - found if kind == "min" else found - best
-        assert beyond >= -(1e-13 if of_best else 1e-14) * abs(best)
-        if math.isfinite(found):
-            assert beyond <= of_largest * largest + of_best * abs(best), design
-
-
 PRESS = {"m_slider": 1.0, "m_rod": 0.6, "I_rod": 0.004, "g_Y": -9.81}
 
 

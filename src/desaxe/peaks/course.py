@@ -44,6 +44,7 @@ class Course(NamedTuple):
     jumps  the first angle after each jump
     arcs   those of the loads over Y that jump
     turns  the dead centres, at which friction jumps; those of `jumps` first, which are exact; conditions
+    leaps  where a member of a sum of loads jumps over Y: there rounding decides which side a value is of
     """
 
     nodes: Array
@@ -51,6 +52,7 @@ class Course(NamedTuple):
     jumps: Marks
     arcs: Mapping[str, Arcs]
     turns: Array
+    leaps: Array
 
     def pieces(self, rows: NDArray[np.intp], theta: Array) -> dict[str, NDArray[np.intp]]:
         """The pieces to hold at angles of the designs `rows`."""
@@ -90,11 +92,14 @@ def course_of(designs: SearchedDesigns) -> Course:
         if name not in of_motion
     ]
     parts += [_over_theta(load, designs) for load in members if isinstance(load, OverTheta)]
+    leaps = [np.empty((designs.size, 0))]
     for load in members:
         if isinstance(load, OverY):
-            parts.append(
-                _over_Y(load, None, designs, *meeting_and_bent(load, lengths, designs.branch), turning)
-            )
+            every, bent = meeting_and_bent(load, lengths, designs.branch)
+            parts.append(_over_Y(load, None, designs, every, bent, turning))
+            if load.jumping:
+                (own,) = _arcs(designs._replace(loads={"": load}), {"": every}, dead).values()
+                leaps.append(np.where(own.leaps, own.starts, np.nan))
     parts += _at_speeds(speeds_of(members), designs)
     known = [*(angles for part in parts for angles, _ in (*part.kinks, *part.jumps)), turning]
     conditions = _conditions(designs, np.concatenate(known, axis=1)) if designs.conditions else []
@@ -108,7 +113,7 @@ def course_of(designs: SearchedDesigns) -> Course:
     nodes = nodes[:, some]
     kinks, jumps = (_marks([mark for part in parts for mark in part[k]], designs.size) for k in (1, 2))
     turns = [jumps.of(TURNING), turning, *(angles for part in conditions for angles, _ in part.jumps)]
-    return Course(nodes, kinks, jumps, arcs, np.concatenate(turns, axis=1))
+    return Course(nodes, kinks, jumps, arcs, *(np.concatenate(every, axis=1) for every in (turns, leaps)))
 
 
 class _Part(NamedTuple):
@@ -187,9 +192,9 @@ def _over_Y(
         room = BESIDE * np.spacing(1.0 + np.abs(own))  # so that no search halves its way to a kink
         smooth = own if every is bent else repeated(every, *designs.theta)
         return _Part(np.concatenate([smooth, own - room, own + room], axis=1), kinks, [])
-    before = np.where(arcs.leaps, np.nextafter(arcs.starts, -inf), np.nan)
     jumps = [(np.where(arcs.turns, arcs.starts, np.nan), TURNING)]
     jumps += [(np.where(arcs.leaps & ~arcs.turns, arcs.starts, np.nan), crossing)]
+    before = np.nextafter(arcs.starts, -inf)  # where the slope is that of the arc before
     return _Part(np.append(arcs.starts, before, axis=1), kinks, jumps)
 
 

@@ -64,7 +64,23 @@ def at_jumps(
     near[side != 0] = False
     for what in np.unique(kinds[near.any(axis=0)]).tolist():
         _move(values, kind, what, np.flatnonzero(near[:, kinds == what].any(axis=1)), theta, out)
+    _tell_sides(values, theta, out[0], side)
     return side
+
+
+def _tell_sides(values: ValuesUnderLoads, theta: Array, value: Array, side: NDArray[np.int8]) -> None:
+    """The side of extrema at a jump of a member of a sum of loads, by values farther off than rounding."""
+    leaps = values.course.leaps
+    room = ROUNDED * np.spacing(1.0 + np.abs(leaps))
+    rows, places = np.nonzero((np.abs(leaps - theta[:, None]) <= room) & (side == 0)[:, None])
+    if rows.size:
+        starts, room = leaps[rows, places], room[rows, places]
+        both = values.at(2, np.tile(rows, 2), np.append(starts - room, starts + room))
+        limit, slope = (row.reshape(2, -1) for row in both)
+        most = EQUAL * np.abs(limit).max(axis=0) + 2.0 * room * np.abs(slope).max(axis=0)
+        before, after = np.abs(limit - value[rows])
+        apart = np.abs(limit[0] - limit[1]) > most
+        side[rows[apart]] = np.where(before < after, -1, 1)[apart]
 
 
 def _complete(values: ValuesUnderLoads, kind: int, jumps: Jumps, theta: Array, out: Array) -> None:
