@@ -157,13 +157,36 @@ def test_calls_of_a_crankshaft_on_the_command_line(tmp_path, capsys):
             words
         )
     for words, message in (
-        (["run", str(file)], "several sliders are for desaxe.Crankshaft.read and desaxe CALL --machine FILE"),
+        (["scene", str(file)], "several sliders are for desaxe.Crankshaft.read"),
         (["events", "--machine", str(file)], "events is of one slider"),
     ):
         assert main(words) != 0
         assert message in capsys.readouterr().err
     assert main(["peak", "--help"]) == 0
     assert "sliders" not in capsys.readouterr().out
+
+
+def test_a_scene_file_of_a_crankshaft_runs(tmp_path, capsys):
+    """Its outputs over the angles of the file: the sum of what each slider gives by itself."""
+    file, data = tmp_path / "three.toml", tmp_path / "three.csv"
+    scene = SCENE.replace("[motion]", "[motion]\ntheta = [0, 45, 200]")
+    file.write_text(f'{scene}[results]\ndata = "{data}"\n', encoding="utf-8")
+    assert main(["run", str(file), "--report", str(tmp_path / "three.md")]) == 0
+    out = capsys.readouterr().out
+    assert "Crankshaft with 3 sliders" in out
+    assert (tmp_path / "three.md").exists()
+    rows = [line.split(",") for line in data.read_text().splitlines()[2:]]
+    assert [float(row[0]) for row in rows] == [0.0, 45.0, 200.0]
+    three = dx.Crankshaft.read(file)
+    for theta, torque, *_ in rows:
+        one = [
+            m.replace(omega0="3000 rpm").evaluate("T_in", theta=f"{float(theta) - 120 * k - 30} deg")
+            for k, m in enumerate(three.members)
+        ]
+        assert float(torque) == pytest.approx(sum(one), rel=1e-9, abs=1e-9)
+    file.write_text(f'{scene}[[peak]]\nquantity = "T_in"\n', encoding="utf-8")
+    assert main(["run", str(file)]) == 2
+    assert "peak: of one slider" in capsys.readouterr().err
 
 
 def test_a_crankshaft_is_printed_with_its_speed():

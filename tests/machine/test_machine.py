@@ -183,8 +183,6 @@ def test_a_load_that_is_a_function_stays_it():
 def test_it_shows_itself():
     text = repr(PRESS)
     for words in (
-        "[C]",
-        "A",
         "0.05 m",
         "30 rad/s",
         "-600 N",

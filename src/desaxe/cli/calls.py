@@ -147,10 +147,11 @@ def _columns(machine: Any, arguments: Mapping[str, Any], answer: Any) -> dict[st
     from ..mechanism.quantity_units import SI
     from ..mechanism.read import read_array
 
-    system = getattr(machine, "units", None) or SI
+    is_machine = hasattr(machine, "in_units")
+    system = machine.units if is_machine else SI
     arrays = {n: read_array(INPUTS[n], value, system) for n, value in arguments.items()
               if n in INPUTS and isinstance(value, list)}  # fmt: skip
-    if hasattr(machine, "in_units"):
+    if is_machine:
         arrays |= {n: value for n, value in machine.items() if hasattr(value, "tolist") and n not in arrays}
     units = {n: system.of(n) for n in arrays if n not in answer}
     return {n: (unit.shown(arrays[n]), unit.unit) for n, unit in units.items()}

@@ -3,7 +3,7 @@
 import argparse
 import io
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, redirect_stdout
 from importlib import import_module
 from pathlib import Path
@@ -20,6 +20,7 @@ SCENE = Option("scene", "path of a TOML file", {"metavar": "SCENE"})
 
 def _run(options: argparse.Namespace) -> int:
     from ..scenes.command import run_scene
+    from ..scenes.reading.read import plain_data
 
     pairs = [one.partition("=") for one in options.tolerance]
     for name, equals, half in pairs:
@@ -28,7 +29,24 @@ def _run(options: argparse.Namespace) -> int:
     if pairs and options.report is None:
         raise UsageError("--tolerance is for the report: give --report FILE")
     tolerances = {name.strip(): half.strip() for name, _, half in pairs}
+    if "crankshaft" in plain_data(options.scene):
+        return _run_shaft(options, tolerances)
     return run_scene(options.scene, options.overwrite, options.report, tolerances)
+
+
+def _run_shaft(options: argparse.Namespace, tolerances: Mapping[str, str]) -> int:
+    """Several sliders on one crankshaft."""
+    from ..machine.crankshaft import Crankshaft, content_of_shaft
+    from ..machine.crankshaft_report import run_text
+    from ..support.toml import read_toml
+
+    shaft, data = Crankshaft.read(options.scene), read_toml(Path(options.scene))
+    theta = content_of_shaft(options.scene)[0].inputs.get("theta", 0.0)
+    print(run_text(shaft, data, theta, options.overwrite))
+    if options.report is not None:
+        shaft.report(options.report, data.get("outputs"), tolerances=tolerances, overwrite=options.overwrite)
+        print(f"\nReport\n  {printable(options.report)}")
+    return 0
 
 
 def _sections() -> dict[str, str]:

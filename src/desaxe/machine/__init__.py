@@ -5,14 +5,10 @@ crankshaft `desaxe.Crankshaft`: several sliders on one crankshaft
 methods    the table of public functions that are methods, and how a function becomes one
 arguments  what a call is given, in SI units
 function   a prepared callable in those units
-results    what a call gives, in the units of the machine, or as pint quantities
 plots      `machine.plot("a_C")` and the pictures of `desaxe.plot`
-tornado    the changes and title of the tornado of a machine
 scenes     a machine from a scene, and a scene from a machine
 crankshaft_report  the page with everything about a crankshaft
 report     the page with everything about a machine
-tornado    the tornado of a machine
-load_tables  loads that vary with the motion in such a scene
 summary    how a machine shows itself: drawing, lengths, speed, masses, loads, stroke
 """
 

@@ -1,19 +1,25 @@
 """`Crankshaft.report`: its sliders, drive, peaks and balance as one page to hand on."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..evaluation.labels import source
-from ..scenes.document.blocks import Document, Lines, Section, TextTable, cell, image_of
+from ..scenes.document.blocks import Document, Lines, Section, Text, TextTable, cell, image_of
 from ..scenes.document.page import require_document, write_document
+from ..scenes.document.render import terminal
+from ..scenes.schema import SceneError
+from ..scenes.stores.files import check_place, write
 from ..support.files import as_path
 from ..support.shown import printed
 
 OUTPUTS = ("T_in", "F_shaking_X", "F_shaking_Y", "M_shaking")
 BALANCE = ("F_inertia_X", "F_inertia_Y", "M_inertia", "C_inertia_X", "C_inertia_Y")
 ORDERS = 6
+OF_ONE = ("reduce", "check", "peak", "picture")  # keys of a scene of one slider
 
 
 def write_report(
@@ -23,10 +29,37 @@ def write_report(
     file = as_path("path", path)
     require_document(file, overwrite)
     names = OUTPUTS if outputs is None else (outputs,) if isinstance(outputs, str) else tuple(outputs)
-    sections = [_sliders(shaft), _drive(shaft, fluctuation), _peaks(shaft, names), _balance(shaft)]
-    sections.append(Section("Origin", [Lines(source())]))
-    title = f"Crankshaft with {len(shaft.members)} sliders"
-    return write_document(Document(title, sections), file, overwrite)
+    origin = Section("Origin", [Lines(source())])
+    return write_document(
+        Document(_title(shaft), [*_sections(shaft, names, fluctuation), origin]), file, overwrite
+    )
+
+
+def run_text(shaft: Any, data: Mapping[str, Any], theta: Any, overwrite: bool) -> str:
+    """The report of a scene file with [crankshaft] as text, once its outputs are in [results] data.
+
+    theta  its crank angles [rad]: outputs over them are what the file gets
+    """
+    wrong = next((key for key in OF_ONE if data.get(key)), None)
+    if wrong is not None:
+        raise SceneError(f"{wrong}: of one slider; a crankshaft has outputs, and data in [results]")
+    names, results = tuple(data.get("outputs") or OUTPUTS), data.get("results", {})
+    files: list[Path] = []
+    if "data" in results:
+        path = Path(results["data"])
+        check_place(path, overwrite)
+        angles = shaft.units.of("theta").shown(np.asarray(theta, float))
+        files = write(path, shaft.grid(list(names), theta=angles), {}, overwrite)
+    written = [Section("Written", [Text(str(file)) for file in files])] if files else []
+    return terminal(data.get("title") or _title(shaft), [*_sections(shaft, names, 0.03), *written])
+
+
+def _title(shaft: Any) -> str:
+    return f"Crankshaft with {len(shaft.members)} sliders"
+
+
+def _sections(shaft: Any, names: Sequence[str], fluctuation: float) -> list[Section]:
+    return [_sliders(shaft), _drive(shaft, fluctuation), _peaks(shaft, names), _balance(shaft)]
 
 
 def _unit(shaft: Any, name: str) -> str:

@@ -268,7 +268,8 @@ class Machine(Mapping[str, Any]):
         with IMPORTS:
             from .report import write_report
 
-        return write_report(self, path, outputs, tolerances or {}, fluctuation, overwrite, more)
+        options = {"tolerances": tolerances or {}, "fluctuation": fluctuation, "overwrite": overwrite}
+        return write_report(self, path, outputs, options, more)
 
     def to_scene(
         self, path: str | PathLike[str], outputs: Any = OUTPUTS, *, overwrite: bool = False, **more: Any

@@ -1,9 +1,9 @@
-"""The summary of a machine: a small drawing and a table, as text and as HTML for notebooks."""
+"""The summary of a machine: a table, as text, and with a drawing as HTML for notebooks."""
 
 from collections.abc import Mapping
 from html import escape
-from math import cos, isfinite, isnan, pi, sin
-from typing import Any, NamedTuple
+from math import cos, isfinite, isnan, sin
+from typing import Any
 
 from ..design.events.events import events
 from ..design.feasibility.feasibility import feasibility
@@ -13,22 +13,14 @@ from ..loads.words import brief
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, LOADS
 from ..mechanism.quantity_units import UnitSystem
+from ..scenes.document.design import feasible_angle
 from ..support.shown import with_unit
 from ..support.text_table import table
 
 _ORDER = ("AB", "BC", "ec", "omega0", "omega", "alpha", *LOADS)
 NAMES = {name: INPUTS[name].brief for name in _ORDER} | {"branch": "side of the slider"}
-ROWS, COLUMNS = 11, 21  # of the drawing in text
 WIDEST = 28  # letters of a value that the column is made for
-ANGLE = pi / 3  # at which it is drawn
-
-
-class Pose(NamedTuple):
-    """Positions of the joints for a drawing: A is at the origin, Y points up."""
-
-    B: tuple[float, float]
-    C: tuple[float, float]
-    AB: float
+HEIGHT = 180.0  # of the drawing
 
 
 def rows_of(machine: Any) -> list[tuple[str, str, str]]:
@@ -77,83 +69,15 @@ def _geometry(machine: Any) -> list[tuple[str, str, str]]:
     return rows
 
 
-def pose_of(machine: Mapping[str, Any]) -> Pose | None:
-    """The pose of the first design at a feasible angle; None without one, or without lengths."""
-    if any(name not in machine for name in LENGTHS):
-        return None
-    ec, AB, BC = (_first(machine[name]) for name in LENGTHS)
-    theta = ANGLE
-    Y = evaluate("Y", theta=theta, ec=ec, AB=AB, BC=BC, branch=machine.get("branch", 1))
-    if isnan(Y):
-        intervals = feasibility(ec=ec, AB=AB, BC=BC)["theta_intervals"]
-        if not intervals:
-            return None
-        theta = 0.5 * sum(intervals[0])
-        Y = evaluate("Y", theta=theta, ec=ec, AB=AB, BC=BC, branch=machine.get("branch", 1))
-    return Pose((AB * sin(theta), AB * cos(theta)), (-ec, float(Y)), AB)
-
-
 def _first(value: Any) -> float:
     return float(value[0]) if hasattr(value, "tolist") else float(value)
 
 
-# ---- text ----------------------------------------------------------------------------------------
-
-
 def text_of(machine: Any) -> str:
-    """The machine as text: the drawing beside its table."""
-    lines = table(rows_of(machine), most=WIDEST)
+    """The machine as text."""
     units = f", units={machine.units!r}" if machine.units else ""
-    title = f"Machine({len(machine)} inputs{units})"
-    pose = pose_of(machine)
-    drawing = _drawing(pose) if pose else []
-    height = max(len(drawing), len(lines))
-    left = [*drawing, *[""] * (height - len(drawing))]
-    right = [*lines, *[""] * (height - len(lines))]
-    wide = COLUMNS if drawing else 0
-    return "\n".join([title, *(f"  {a:{wide}}  {b}".rstrip() for a, b in zip(left, right, strict=True))])
-
-
-def _drawing(pose: Pose) -> list[str]:
-    """The mechanism in letters, to scale; a letter is twice as high as wide."""
-    (bx, by), (cx, cy) = pose.B, pose.C
-    xs, ys = (0.0, bx, cx), (0.0, by, cy)
-    size = max((max(ys) - min(ys)) / (ROWS - 1), 2.0 * (max(xs) - min(xs)) / (COLUMNS - 5)) or 1.0
-    middle = 0.5 * (max(xs) + min(xs))
-    cells = [[" "] * COLUMNS for _ in range(ROWS)]
-
-    def place(x: float, y: float) -> tuple[int, int]:
-        row = (max(ys) - y) / size
-        column = COLUMNS // 2 + 2.0 * (x - middle) / size
-        return min(ROWS - 1, max(0, round(row))), min(COLUMNS - 2, max(1, round(column)))
-
-    for (x0, y0), (x1, y1) in (((bx, by), (cx, cy)), ((0.0, 0.0), (bx, by))):
-        (first, left), (last, right) = place(x0, y0), place(x1, y1)
-        steps = max(abs(last - first), abs(right - left), 1)
-        for k in range(steps + 1):
-            row, column = (round(a + (b - a) * k / steps) for a, b in ((first, last), (left, right)))
-            cells[row][column] = _stroke(x1 - x0, y1 - y0)
-    for (x, y), mark in (((bx, by), "o"), ((0.0, 0.0), "A")):
-        row, column = place(x, y)
-        cells[row][column] = mark
-    row, column = place(cx, cy)
-    cells[row][column - 1 : column + 2] = "[C]"
-    lines = ["".join(line).rstrip() for line in cells]
-    while lines and not lines[-1]:
-        lines.pop()
-    return lines
-
-
-def _stroke(x: float, y: float) -> str:
-    """The character with about this slope."""
-    if abs(x) < 0.2 * abs(y):
-        return "|"
-    if abs(y) < 0.25 * abs(x):
-        return "-"
-    return "/" if x * y > 0.0 else "\\"
-
-
-# ---- HTML ----------------------------------------------------------------------------------------
+    lines = (f"  {line}" for line in table(rows_of(machine), most=WIDEST))
+    return "\n".join([f"Machine({len(machine)} inputs{units})", *lines])
 
 
 def html_of(machine: Any) -> str:
@@ -164,51 +88,49 @@ def html_of(machine: Any) -> str:
         for name, value, meaning in rows_of(machine)
     )
     units = f"<caption>units: {escape(str(machine.units).strip(chr(39)))}</caption>" if machine.units else ""
-    pose = pose_of(machine)
-    drawing = _svg(pose) if pose else ""
     return (
         "<div style='display:flex;gap:1.5em;align-items:center'>"
-        f"{drawing}<table>{units}<tbody>{rows}</tbody></table></div>"
+        f"{_drawing(machine)}<table>{units}<tbody>{rows}</tbody></table></div>"
     )
 
 
-def _svg(pose: Pose) -> str:
-    """Crank, rod, slider and guide."""
-    (bx, by), (cx, cy), r = pose.B, pose.C, pose.AB or 0.1 * (abs(pose.C[1]) or 1.0)
-    room = 0.45 * r
-    low, high = min(-r, cy) - room, max(r, cy) + room
-    left, right = min(-r, cx) - room, max(r, cx) + room
-    wide, tall = right - left, high - low
-    height = 180.0
-    width = max(40.0, height * wide / tall)
+def _drawing(machine: Mapping[str, Any]) -> str:
+    """Crank, rod, slider and guide of the first design at a feasible angle; empty where there is none."""
+    if any(name not in machine for name in LENGTHS):
+        return ""
+    lengths: dict[str, Any] = {name: _first(machine[name]) for name in LENGTHS}
+    branch = machine.get("branch", 1)
+    theta = feasible_angle(lengths, branch)
+    end = float(evaluate("Y", theta=theta, branch=branch, **lengths))
+    if isnan(end):
+        return ""
+    crank = lengths["AB"]
+    pin, slider = (crank * sin(theta), crank * cos(theta)), (-lengths["ec"], end)
+    r = crank or 0.1 * (abs(end) or 1.0)
+    low, left = min(-r, end) - 0.45 * r, min(-r, slider[0]) - 0.45 * r
+    high, right = max(r, end) + 0.45 * r, max(r, slider[0]) + 0.45 * r
+    scale = HEIGHT / (high - low)
 
-    def x(value: float) -> str:
-        return f"{(value - left) / wide * width:.1f}"
+    def at(point: tuple[float, float]) -> tuple[float, float]:
+        return (point[0] - left) * scale, (high - point[1]) * scale
 
-    def y(value: float) -> str:
-        return f"{(high - value) / tall * height:.1f}"
+    def line(a: tuple[float, float], b: tuple[float, float], style: str) -> str:
+        (x1, y1), (x2, y2) = at(a), at(b)
+        ends = f"x1='{x1:.1f}' y1='{y1:.1f}' x2='{x2:.1f}' y2='{y2:.1f}'"
+        return f"<line {ends} stroke-linecap='round' {style}/>"
 
-    def line(
-        a: tuple[float, float], b: tuple[float, float], colour: str, thick: float, dash: str = ""
-    ) -> str:
-        return (
-            f"<line x1='{x(a[0])}' y1='{y(a[1])}' x2='{x(b[0])}' y2='{y(b[1])}' stroke='{colour}' "
-            f"stroke-width='{thick:g}' stroke-linecap='round'{dash}/>"
-        )
-
-    scale = height / tall
-    half = 0.28 * r * scale
-    dashes = " stroke-dasharray='3 3'"
+    half, dashes = 0.28 * r * scale, "stroke='#999' stroke-dasharray='3 3'"
+    (ax, ay), (cx, cy) = at((0.0, 0.0)), at(slider)
+    joints = [f"<circle cx='{x:.1f}' cy='{y:.1f}' r='3.5' fill='#fff' stroke='#222'/>"
+              for x, y in map(at, ((0.0, 0.0), pin, slider))]  # fmt: skip
     parts = [
-        f"<circle cx='{x(0.0)}' cy='{y(0.0)}' r='{r * scale:.1f}' fill='none' stroke='#999'{dashes}/>",
-        line((cx, low + 0.3 * room), (cx, high - 0.3 * room), "#999", 1.0, dashes),
-        f"<rect x='{float(x(cx)) - half:.1f}' y='{float(y(cy)) - half:.1f}' width='{2 * half:.1f}' "
-        f"height='{2 * half:.1f}' fill='#ddd' stroke='#555'/>",
-        line((bx, by), (cx, cy), "#0072B2", 4.0),
-        line((0.0, 0.0), (bx, by), "#D55E00", 4.0),
-        *(
-            f"<circle cx='{x(px)}' cy='{y(py)}' r='3.5' fill='#fff' stroke='#222'/>"
-            for px, py in ((0.0, 0.0), (bx, by), (cx, cy))
-        ),
+        f"<circle cx='{ax:.1f}' cy='{ay:.1f}' r='{crank * scale:.1f}' fill='none' {dashes}/>",
+        line((slider[0], low + 0.1 * r), (slider[0], high - 0.1 * r), dashes),
+        f"<rect x='{cx - half:.1f}' y='{cy - half:.1f}' width='{2 * half:.1f}' height='{2 * half:.1f}' "
+        "fill='#ddd' stroke='#555'/>",
+        line(pin, slider, "stroke='#0072B2' stroke-width='4'"),
+        line((0.0, 0.0), pin, "stroke='#D55E00' stroke-width='4'"),
+        *joints,
     ]
-    return f"<svg width='{width:.0f}' height='{height:.0f}' role='img'>{''.join(parts)}</svg>"
+    width = max(40.0, (right - left) * scale)
+    return f"<svg width='{width:.0f}' height='{HEIGHT:.0f}' role='img'>{''.join(parts)}</svg>"
