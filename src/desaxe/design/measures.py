@@ -137,20 +137,11 @@ def checked(measure: Any) -> Measure:
         return "at", measure[1], str(measure[2])
     if is_named(measure):
         return str(measure)
-    hint = ""
-    if isinstance(measure, (tuple, list)) and len(measure) == 2 and isinstance(measure[0], str):
-        near = meant(measure[0], KINDS)
-        hint = f"did you mean {(near[0], measure[1])!r}? " if near else ""
-    elif isinstance(measure, str):
-        near = meant(measure, NAMED)
-        peaks = [] if near else meant(measure, quantities())
-        hint = (
-            f"did you mean {near[0]!r}? "
-            if near
-            else f"did you mean ('absmax', {peaks[0]!r})? "
-            if peaks
-            else ""
-        )
+    pair = isinstance(measure, (tuple, list)) and len(measure) == 2 and isinstance(measure[0], str)
+    near = meant(measure[0], KINDS) if pair else meant(measure, NAMED) if isinstance(measure, str) else []
+    hint = f"did you mean {((near[0], measure[1]) if pair else near[0])!r}? " if near else ""
+    if isinstance(measure, str) and not near and (peaks := meant(measure, quantities())):
+        hint = f"did you mean ('absmax', {peaks[0]!r})? "
     there = f"{'There' if hint else 'there'} are {', '.join(NAMED)}"
     raise ValueError(
         f"{shown(measure)} is not a quantity of a design; {hint}{there} and the peaks, "

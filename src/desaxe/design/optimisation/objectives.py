@@ -17,7 +17,7 @@ from ...mechanism.read import read
 from ...support.deadline import Deadline
 from ...support.shown import shown
 from ..measures import Measure, checked, is_named, text_of
-from .problem import EQUAL, LOWER, UPPER, Limit, SmoothTerm, Space, sides_of
+from .problem import EQUAL, LOWER, UPPER, Limit, Smooth, Space, sides_of
 
 EQUATION = "=="  # in place of a lower end
 
@@ -128,10 +128,8 @@ def limits_of(keep: Mapping[Any, Any]) -> list[Limit]:
                 raise ValueError(ends + ": the lower bound first")
             limits.append(Limit(key, measure, 1.0, low, EQUAL))
             continue
-        if low is not None:
-            limits += lower_limits(key, measure, low)
-        if high is not None:
-            limits += upper_limits(key, measure, high)
+        for bound, side in ((low, LOWER), (high, UPPER)):
+            limits += [] if bound is None else side_limits(key, measure, bound, side)
     return limits
 
 
@@ -165,25 +163,17 @@ def value_of(measure: Measure, value: Any, caller: str, limit: str = "a finite n
     return read(Input(text_of(measure), unit_of(measure), "limit", limit=limit), value, caller)
 
 
-def lower_limits(key: Any, measure: Measure, bound: float) -> list[Limit]:
-    """measure >= bound; if it is the smallest of several, each of them is."""
-    sides = sides_of(measure)
-    if sides.largest:
-        return [Limit(key, measure, 1.0, bound, LOWER)]
-    return [Limit(key, part, sign, sign * bound, LOWER) for part, sign in sides.parts]
+def side_limits(key: Any, measure: Measure, bound: float, side: str) -> list[Limit]:
+    """measure >= bound, or <= bound; if it is the smallest, or the largest, of several, each of them is."""
+    sides, sign = sides_of(measure), 1.0 if side == LOWER else -1.0
+    if sides.largest == (side == LOWER):
+        return [Limit(key, measure, sign, bound, side)]
+    return [Limit(key, part, sign * own, own * bound, side) for part, own in sides.parts]
 
 
-def upper_limits(key: Any, measure: Measure, bound: float) -> list[Limit]:
-    """measure <= bound; if it is the largest of several, each of them is."""
-    sides = sides_of(measure)
-    if not sides.largest:
-        return [Limit(key, measure, -1.0, bound, UPPER)]
-    return [Limit(key, part, -sign, sign * bound, UPPER) for part, sign in sides.parts]
-
-
-def problems(goal: Goal) -> list[list[SmoothTerm]]:
+def problems(goal: Goal) -> list[list[tuple[Smooth, float]]]:
     """The minimax problems of a goal, whose best optimum counts; each is a list of pieces."""
     sides = sides_of(goal.measure)
-    pieces = [SmoothTerm(part, -goal.sense * sign) for part, sign in sides.parts]
+    pieces = [(part, -goal.sense * sign) for part, sign in sides.parts]
     together = sides.largest == (goal.sense < 0)
     return [pieces] if together else [[piece] for piece in pieces]

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from ..measures import measured
-from .objectives import Goal, lower_limits, problems, upper_limits
+from .objectives import Goal, problems, side_limits
 from .optimum import FOUND, NONE, SETTLED, UNSURE, none_turns, result_of
-from .problem import UPPER, Array, Limit, Space
+from .problem import LOWER, UPPER, Array, Limit, Space
 from .search import SATISFIED, Candidate, LocalSearch
 
 EDGES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # of the rod: how near to the limit of turning the search goes
@@ -30,7 +30,7 @@ def solved(goal: Goal, space: Space, limits: list[Limit], starts: int, seed: int
     history: list[tuple[float, float]] = []
     places: list[Array] = []
     for edge in EDGES:
-        implied = [] if own else lower_limits(None, "margin", edge * rod)
+        implied = [] if own else side_limits(None, "margin", edge * rod, LOWER)
         # After the first time the best is followed towards the edge.
         best = _best(goal, space, [*limits, *implied], 0 if places else starts, seed, places)
         found, search = best
@@ -104,8 +104,8 @@ def front(
     for bounds in product(*steps):
         held = [*limits]
         for goal, bound in zip(goals[1:], bounds, strict=True):
-            sides = lower_limits if goal.sense > 0 else upper_limits
-            held += sides(goal.measure, goal.measure, float(bound))
+            side = LOWER if goal.sense > 0 else UPPER
+            held += side_limits(goal.measure, goal.measure, float(bound), side)
         result = solved(goals[0], space, held, starts, seed)
         if result["status"] in (FOUND, UNSURE):
             found.append(result)

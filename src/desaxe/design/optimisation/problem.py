@@ -29,13 +29,6 @@ class Limit(NamedTuple):
     side: str
 
 
-class SmoothTerm(NamedTuple):
-    """One of the smooth functions, sign * measure, whose maximum is minimised."""
-
-    measure: Any  # a measure, or a function of designs
-    sign: float
-
-
 class Space(NamedTuple):
     """The parameters that vary, between finite bounds, and those that are fixed."""
 

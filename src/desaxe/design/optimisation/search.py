@@ -8,17 +8,17 @@ At an optimum sum w_i grad piece_i = sum lambda_j grad limit_j with w, lambda >=
 (Karush, Kuhn, Tucker): lambda_j is what the optimum gains from relaxing limit j.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from inspect import signature
 from itertools import product
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize, nnls, root
 from scipy.stats import qmc
 
 from ...support.forks import IMPORTS
-from .problem import EQUAL, LOWER, Array, Functions, Limit, SmoothTerm, Space
+from .problem import EQUAL, LOWER, Array, Functions, Limit, Smooth, Space
 
 SCAN = 7  # 2^7 designs are looked at first
 NEAR = 1e-6  # of its scale: a limit that is so near is active
@@ -48,12 +48,11 @@ class LocalSearch:
     """The search of one problem: minimise the largest piece within the limits."""
 
     def __init__(
-        self, space: Space, pieces: Sequence[SmoothTerm], limits: Sequence[Limit], seed: int
+        self, space: Space, pieces: Sequence[tuple[Smooth, float]], limits: Sequence[Limit], seed: int
     ) -> None:
-        self.space, self.pieces, self.limits, self.seed = space, tuple(pieces), tuple(limits), seed
-        rows = [(p.measure, p.sign, 0.0) for p in pieces] + [(c.measure, c.sign, c.bound) for c in limits]
+        self.space, self.limits, self.seed, self.count = space, tuple(limits), seed, len(pieces)
+        rows = [(*piece, 0.0) for piece in pieces] + [(c.measure, c.sign, c.bound) for c in limits]
         self.functions = Functions(space, rows)
-        self.count = len(self.pieces)
         self.equal = np.array([c.side == EQUAL for c in limits], bool)
         self.scan()
 
@@ -62,7 +61,7 @@ class LocalSearch:
     def scan(self) -> None:
         """Evaluate designs spread over the space; set the scale of every function from them."""
         n = len(self.space.names)
-        seed = {"rng" if "rng" in _parameters(qmc.Sobol) else "seed": self.seed}
+        seed = {"rng" if "rng" in signature(qmc.Sobol).parameters else "seed": self.seed}
         with IMPORTS:  # for the table of the sequence, a resource
             spread = qmc.Sobol(n, **seed)
         corners = np.array(list(product((0.0, 1.0), repeat=min(n, 6))))
@@ -182,14 +181,7 @@ class LocalSearch:
             value = self.scaled(z)[0][m:]
             return np.concatenate([value, -value[both], z, 1.0 - z])
 
-        answer = minimize(
-            lambda z: self.scaled(z)[0][:m].max(),
-            found.z,
-            method="COBYLA",
-            constraints=[{"type": "ineq", "fun": limits}],
-            options={"rhobeg": 0.01, "tol": 1e-9, "maxiter": PROBES},
-        )
-        other = self.judged(np.clip(answer.x, 0.0, 1.0))
+        other = self.judged(_probe(lambda z: self.scaled(z)[0][:m].max(), found.z, limits, 0.01))
         better = other.violation <= BROKEN and other.value < found.value
         gain = (found.value - other.value) / self.scale[0] if better else 0.0
         best = other if better else found
@@ -205,11 +197,8 @@ class LocalSearch:
             return float(self._violation(self.scaled(z)[0][m:]))
 
         start = self.places[np.argmin(self._violation(self.scanned[:, m:]))]
-        ends = {"type": "ineq", "fun": lambda z: np.append(z, 1.0 - z)}
-        options = {"rhobeg": 0.1, "tol": 1e-9, "maxiter": PROBES}
-        answer = minimize(broken, start, method="COBYLA", constraints=[ends], options=options)
-        tried = [found.z, start, np.clip(answer.x, 0.0, 1.0)]
-        return self.judged(min(tried, key=broken))
+        probed = _probe(broken, start, lambda z: np.append(z, 1.0 - z), 0.1)
+        return self.judged(min((found.z, start, probed), key=broken))
 
     # ---- optimality -------------------------------------------------------------------------------
 
@@ -290,5 +279,11 @@ class LocalSearch:
         return other if worth and np.isfinite(other.value) else found
 
 
-def _parameters(function: Any) -> Any:
-    return signature(function).parameters
+def _probe(
+    function: Callable[[Array], float], start: Array, limits: Callable[[Array], Array], reach: float
+) -> Array:
+    """A minimum within limits, which stay positive, without derivatives."""
+    options = {"rhobeg": reach, "tol": 1e-9, "maxiter": PROBES}
+    kept = [{"type": "ineq", "fun": limits}]
+    answer = minimize(function, start, method="COBYLA", constraints=kept, options=options)
+    return np.asarray(np.clip(answer.x, 0.0, 1.0))

@@ -134,7 +134,7 @@ def _answer(
         "first_order": first,
         "monte_carlo": drawn,
         "contributions": dict(sorted(shares.items(), key=lambda item: -item[1])),
-        "worst_case": _covered(_worst_case(function, value, slopes, rough), found, covered),
+        "worst_case": _worst_case(function, value, slopes, rough, found, covered),
         "agreement": _agreement(first, drawn),
         "status": int(_status(value, drawn["infeasible"], beside)),
     }
@@ -220,29 +220,25 @@ def _monte_carlo(every: Array) -> dict[str, Any]:
     }
 
 
-def _worst_case(function: SampledQuantity, value: float, slopes: Array, rough: Sequence[Inexact]) -> Any:
-    """The extreme values within all tolerances; see `tolerance`."""
+def _worst_case(
+    function: SampledQuantity,
+    value: float,
+    slopes: Array,
+    rough: Sequence[Inexact],
+    samples: Array,
+    sigmas: float | None,
+) -> dict[str, Any] | None:
+    """The extreme values within all tolerances, and the share of the samples outside; see `tolerance`."""
     if any(row.tolerance is None for row in rough):
         return None
-    if function.at_point:
-        ranges = {
-            row.name: Between(row.mean - float(row.tolerance or 0), row.mean + float(row.tolerance or 0))
-            for row in rough
-        }
-        found = _enclosed(function.at_point, {**function.fixed, **ranges}, function.branch)
-        if found is not None:
-            return {"lower": found["lower"], "upper": found["upper"], "guaranteed": True}
-    every = np.append(function.values(_corners(rough, slopes)), value)
-    return {"lower": float(every.min()), "upper": float(every.max()), "guaranteed": False}
-
-
-def _covered(worst: dict[str, Any] | None, samples: Array, sigmas: float | None) -> dict[str, Any] | None:
-    """The worst case with its coverage: the sigmas of the tolerances, and the share outside of them."""
-    if worst is None:
-        return None
-    known = samples[np.isfinite(samples)]
-    outside = (known < worst["lower"]) | (known > worst["upper"])
-    return {**worst, "sigmas": sigmas, "outside": float(outside.mean()) if known.size else np.nan}
+    reach = {row.name: float(row.tolerance or 0) for row in rough}
+    ranges = {row.name: Between(row.mean - reach[row.name], row.mean + reach[row.name]) for row in rough}
+    sure = _enclosed(function.at_point, {**function.fixed, **ranges}, function.branch)
+    every = np.append(function.values(_corners(rough, slopes)), value) if sure is None else np.array(sure)
+    lower, upper, known = float(every.min()), float(every.max()), samples[np.isfinite(samples)]
+    outside = float(((known < lower) | (known > upper)).mean()) if known.size else np.nan
+    worst = {"lower": lower, "upper": upper, "guaranteed": sure is not None}
+    return {**worst, "sigmas": sigmas, "outside": outside}
 
 
 def _corners(rough: Sequence[Inexact], slopes: Array) -> dict[str, Array]:
@@ -253,9 +249,10 @@ def _corners(rough: Sequence[Inexact], slopes: Array) -> dict[str, Array]:
     return {row.name: row.mean + sides[:, i] * float(row.tolerance or 0) for i, row in enumerate(rough)}
 
 
-def _enclosed(name: str, ranges: Mapping[str, Any], branch: int) -> dict[str, Any] | None:
+def _enclosed(name: str, ranges: Mapping[str, Any], branch: int) -> tuple[float, float] | None:
     """The guaranteed range; None where nothing guarantees it."""
-    if "sliders" in ranges or any(map(callable, ranges.values())):  # a load that varies with the motion
+    varies = any(map(callable, ranges.values()))  # a load that varies with the motion
+    if not name or "sliders" in ranges or varies:
         return None
     try:
         with IMPORTS:
@@ -263,7 +260,8 @@ def _enclosed(name: str, ranges: Mapping[str, Any], branch: int) -> dict[str, An
     except ModuleNotFoundError:  # the extra `rigorous`
         return None
     found = enclose(name, branch=branch, boxes=BOXES, **ranges)
-    return found if np.isfinite([found["lower"], found["upper"]]).all() else None
+    ends = found["lower"], found["upper"]
+    return ends if np.isfinite(ends).all() else None
 
 
 def _agreement(first: Any, drawn: Any) -> dict[str, float]:
