@@ -15,6 +15,7 @@ from tests.effort import cases
 PRESS = {"ec": 0.01, "AB": 0.05, "BC": 0.2, "m_slider": 20.0, "I_crank": 2.0, "F_Y": -900.0}
 MOTOR = dx.kloss(40.0, 0.15, 157.08, gear=12)
 KEYS = ("period", "omega_mean", "fluctuation", "power_mean")
+NARROW = 307  # its motion is between two starts of the scan, the lower one of which Newton's method leaves
 
 
 def machine(rng):
@@ -113,9 +114,10 @@ def motions(found):
 @pytest.mark.sampled
 def test_a_period_later_the_free_bodies_are_where_they_were():
     seen = 0
-    for seed in range(cases(4, 14, 300)):
+    for seed in (*range(cases(4, 14, 300)), NARROW):
         call, bodies, torque = drawn(seed)
         found = dx.steady(**call)
+        assert found["status"] == 0 or seed != NARROW
         for one in motions(found):
             places = np.array([17, 100, 222, 333])
             theta, omega = one["theta"][places], one["omega"][places]

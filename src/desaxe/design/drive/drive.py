@@ -1,6 +1,5 @@
 """`drive`: torque, power, work, flywheel and starting torque required over a turn."""
 
-from collections.abc import Mapping
 from math import inf, nan, sqrt
 from typing import Any
 
@@ -74,17 +73,26 @@ def drive(
         >>> [round(found[name], 3) for name in ("torque_mean", "torque_peak", "flywheel_inertia")]
         [0.323, 26.468, 1.845]
     """
-    required = fluctuation_of(fluctuation)
-    design = design_of("drive", inputs, branch, sliders)
+    required = number_of(FLUCTUATION, fluctuation)
+    if required is None or required >= 2.0:
+        raise ValueError(f"fluctuation = {shown(fluctuation)}: it must be {FLUCTUATION.limit}")
+    design = turn_of("drive", inputs, branch, sliders, accelerates=True)
+    if "omega0" not in design.numbers:
+        as_number("omega0", None, ("ec", "AB", "BC", "omega0"), ("drive",))
+    if not design.numbers["omega0"]:
+        raise ValueError("drive: omega0 = 0 gives no cycle; it must be the speed of the crank")
     status = _status(design)
     found: dict[str, Any] = dict.fromkeys(FIGURES, nan)
     slopes = {name: dict.fromkeys(design.parameters, nan) for name in DIFFERENTIATED}
     course: dict[str, Array] = {}
     try:
         if status in (0, 2):
-            _over_a_turn(design, found, slopes, course)
-            if "alpha" not in design.numbers:
-                _flywheel(design, required, found, slopes, course)
+            course = _over_a_turn(design, found, slopes)
+            wheel = flywheel_for(design, required) if "alpha" not in design.numbers else None
+            if wheel is not None:
+                found |= {"flywheel_inertia": wheel.inertia, "flywheel_torque": wheel.torque}
+                slopes |= {"flywheel_inertia": wheel.gradient, "flywheel_torque": wheel.torque_gradient}
+                course |= {"theta_of_speed": wheel.theta, "speed": np.abs(wheel.omega)}
             _starting(design, reverse, found, slopes)
     except NoCycleError as error:
         status, course = error.status, {}
@@ -98,24 +106,6 @@ def drive(
     about = {"fluctuation": required, "gradient": gradients, "status": status}
     inputs = {**design.numbers, **design.loads}
     return Drive({**figures, **about}, inputs, design.branch, course, design.turns)
-
-
-def design_of(caller: str, inputs: Mapping[str, Any], branch: int, sliders: Any = None) -> Turn:
-    """A design whose crank turns."""
-    design = turn_of(caller, inputs, branch, sliders, accelerates=True)
-    if "omega0" not in design.numbers:
-        as_number("omega0", None, ("ec", "AB", "BC", "omega0"), (caller,))
-    if not design.numbers["omega0"]:
-        raise ValueError(f"{caller}: omega0 = 0 gives no cycle; it must be the speed of the crank")
-    return design
-
-
-def fluctuation_of(given: Any) -> float:
-    """A fluctuation of speed that a flywheel can keep, 0.1 or "10 %"; ValueError for any other."""
-    number = number_of(FLUCTUATION, given)
-    if number is None or number >= 2.0:
-        raise ValueError(f"fluctuation = {shown(given)}: it must be {FLUCTUATION.limit}")
-    return number
 
 
 def _status(design: Turn) -> int:
@@ -143,9 +133,9 @@ def _integrands(torque: Array, speed: Array) -> dict[str, tuple[Array, Any, Any]
 
 
 def _over_a_turn(
-    design: Turn, found: dict[str, Any], slopes: dict[str, dict[str, float]], course: dict[str, Array]
-) -> None:
-    """The figures other than flywheel and starting torque, and the arrays of torque and power."""
+    design: Turn, found: dict[str, Any], slopes: dict[str, dict[str, float]]
+) -> dict[str, Array]:
+    """The figures other than flywheel and starting torque; arrays of torque and power."""
     names, way = ["T_in", *(f"T_in_wrt_{name}" for name in design.parameters)], design.direction
     turn = design.panels(names)
     turn = turn.split(turn.roots(turn.values["T_in"]).tolist())
@@ -189,7 +179,7 @@ def _over_a_turn(
     if "alpha" not in design.numbers:  # else turns differ
         found["theta_peak"] %= design.angle
     samples = turn.samples(torque)
-    course |= {"theta": turn.places, "T_in": way * samples, "power_in": samples * turn.samples(speed)}
+    return {"theta": turn.places, "T_in": way * samples, "power_in": samples * turn.samples(speed)}
 
 
 def _peak(design: Turn, name: str, kind: str, **other: Any) -> dict[str, Any]:
@@ -197,22 +187,6 @@ def _peak(design: Turn, name: str, kind: str, **other: Any) -> dict[str, Any]:
     inputs = {n: x for n, x in {**design.numbers, **design.loads, **other}.items() if x is not None}
     top = peak(name, kind=kind, theta=design.ends, branch=design.branch, **inputs)
     return {**top, "gradient": {p: top["gradient"].get(p, 0.0) for p in design.parameters}}
-
-
-def _flywheel(
-    design: Turn,
-    fluctuation: float,
-    found: dict[str, Any],
-    slopes: dict[str, dict[str, float]],
-    course: dict[str, Array],
-) -> None:
-    """The inertia and its derivatives; the speed over the turn with it."""
-    wheel = flywheel_for(design, fluctuation)
-    if wheel is None:
-        return
-    found |= {"flywheel_inertia": wheel.inertia, "flywheel_torque": wheel.torque}
-    slopes |= {"flywheel_inertia": wheel.gradient, "flywheel_torque": wheel.torque_gradient}
-    course |= {"theta_of_speed": wheel.theta, "speed": np.abs(wheel.omega)}
 
 
 def _starting(

@@ -231,10 +231,8 @@ def _student(freedom: int) -> float:
 
 
 def _at_bound(model: FittedModel, x: Any) -> dict[str, str]:
-    found = {}
-    for value, u in zip(x, model.unknowns, strict=True):
-        if value - u.low <= EDGE * u.scale:
-            found[u.name] = "low"
-        elif u.high - value <= EDGE * u.scale:
-            found[u.name] = "high"
-    return found
+    ends = [
+        (u, value - u.low <= EDGE * u.scale, u.high - value <= EDGE * u.scale)
+        for value, u in zip(x, model.unknowns, strict=True)
+    ]
+    return {u.name: "low" if low else "high" for u, low, high in ends if low or high}
