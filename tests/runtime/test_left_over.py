@@ -103,8 +103,8 @@ def test_forces_and_a_given_state():
 
 def test_what_is_decided_in_the_kernel_is_left_alone(monkeypatch):
     """Next to a change point BC - |u| is tiny, but known: nothing is answered twice."""
-    from desaxe.runtime import left_over
+    from desaxe.runtime import executor
 
-    monkeypatch.setattr(left_over, "kernel_for", None)
+    monkeypatch.setattr(executor, "settle", None)
     theta = np.pi / 2 + np.geomspace(1e-9, 0.1, 300)
     assert np.isfinite(dx.evaluate("a_C", theta=theta, ec=0.25, AB=0.125, BC=0.375, **SPEED)).all()

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from math import prod
+from sys import float_info
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -10,10 +11,10 @@ from numpy.typing import NDArray
 from ..mechanism.inputs import INPUTS, SAFE, Input, is_good, limit_of
 from ..mechanism.messages import amount, named
 from ..mechanism.read import read_array
+from ..runtime.executor import run_in_blocks
 from ..runtime.kernels import KernelKey, key_of
 from ..runtime.point import point_of
 from ..runtime.request import Request, as_number
-from ..runtime.threads import run_in_blocks
 from ..support.memory import require
 from ..support.shown import shown
 
@@ -125,12 +126,6 @@ def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str])
     return _not_wholly_bad(name, read_array(INPUTS[name], value))
 
 
-def numeric(name: str, value: Any, names: Sequence[str]) -> Any:
-    """An input as a float, or as an array of floats."""
-    number = as_number(name, value, (name,), names)
-    return as_array(name, value, (name,), names) if number is None else number
-
-
 def number_or_array(row: Input, value: Any) -> Array:
     """The array of `read_array`; ValueError for a number that is not finite."""
     array = read_array(row, value)
@@ -149,21 +144,9 @@ def _not_wholly_bad(name: str, array: Array) -> Array:
 
 def are_good(name: str, array: Array) -> NDArray[np.bool_]:
     """Mask of the elements that are valid values of an input."""
-    least = INPUTS[name].least
-    good: NDArray[np.bool_] = np.isfinite(array)
-    good = good if least is None else good & (array >= least)
-    return good & ~are_beyond(name, array)
-
-
-def are_beyond(name: str, array: Array) -> NDArray[np.bool_]:
-    """Mask of the elements that `is_beyond` holds for."""
-    least, most = SAFE
-    beyond: NDArray[np.bool_] = np.zeros(array.shape, np.bool_)
-    if name != "theta" and array.size and not (array.min() >= -most and array.max() <= most):
-        beyond = (np.abs(array) > most) & np.isfinite(array)
-    if name == "BC" and array.size and not array.min() >= least:
-        beyond = beyond | ((array > 0.0) & (array < least))
-    return beyond
+    least = LEAST if name == "BC" else INPUTS[name].least
+    good: NDArray[np.bool_] = np.abs(array) <= (float_info.max if name == "theta" else MOST)
+    return good if least is None else good & (array >= least)
 
 
 def broadcast_shape(arrays: Mapping[str, Array]) -> tuple[int, ...]:

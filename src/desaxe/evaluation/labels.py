@@ -122,8 +122,12 @@ def labelled(
     inputs: Mapping[str, NDArray[Any]],
     branch: int,
     accuracy: str | float = "standard",
+    of: Iterable[str] = (),
 ) -> "xr.Dataset":
-    """A Dataset of variables by name (dimensions, array, attributes); a 1-d input is a dimension."""
+    """A Dataset of variables by name (dimensions, array, attributes); a 1-d input is a dimension.
+
+    of   names that stand behind those of the variables
+    """
     xarray = import_xarray()
     variables = dict(values)
     for name, (_, _, told) in variables.items():
@@ -133,7 +137,7 @@ def labelled(
         name: ((name,) if array.ndim else (), array, input_attributes(name)) for name, array in inputs.items()
     }
     names = [name for name in values if name not in ("status", "margin")]
-    about = provenance(names, inputs, branch, accuracy)
+    about = provenance(names, inputs, branch, accuracy, of=of)
     ranks = [len(dims) for dims, _, _ in values.values()]
     axes_in_order = not ranks or ranks[0] == max(ranks)  # else those of the coordinates come first
     dataset: xr.Dataset = xarray.Dataset(variables if axes_in_order else None, coordinates, about)

@@ -22,10 +22,10 @@ from ..mechanism.names import LENGTHS
 from ..support.extras import needed
 from .axes import Outer
 from .chunks import Slices, blocks_of, slices_of
-from .labels import labelled, provenance, with_loads
+from .labels import Output, labelled, with_loads
 from .points import Points, Step, points_of
 from .reductions.argument import Reductions
-from .reductions.reduced import Reduced, reduced_of
+from .reductions.reduced import reduced_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -75,6 +75,13 @@ class Plan(NamedTuple):
         return (*self.steps, *self.beside)
 
     @property
+    def variables(self) -> Iterator[tuple[str, list[int], Output]]:
+        """The name, shape and type of each variable."""
+        for step in self.all:
+            for name, output in step.outputs.items():
+                yield name, [self.outer.axes[n].size for n in step.dims], output
+
+    @property
     def sizes(self) -> dict[str, int]:
         """The length of each dimension of the result."""
         return {name: self.outer.axes[name].size for name in self.dims}
@@ -98,12 +105,7 @@ class Plan(NamedTuple):
     @property
     def bytes(self) -> int:
         """Bytes of all variables."""
-        sizes = self.sizes
-        return sum(
-            output.dtype.itemsize * prod(sizes[name] for name in step.dims)
-            for step in self.all
-            for output in step.outputs.values()
-        )
+        return sum(output.dtype.itemsize * prod(shape) for _, shape, output in self.variables)
 
     def blocks(self, lengths: Mapping[str, int]) -> Iterator[Block]:
         """All blocks in order; a step of fewer dimensions is a part of the first block that has its place."""
@@ -127,60 +129,44 @@ class Plan(NamedTuple):
         self, threads: int | None, lengths: Mapping[str, int], before: Callable[[], None]
     ) -> dict[str, Array]:
         """All variables by name, from blocks of these lengths; `before` is called before each."""
-        sizes = self.sizes
-        found = {
-            name: np.empty([sizes[n] for n in step.dims], output.dtype)
-            for step in self.all
-            for name, output in step.outputs.items()
-        }
+        result = {name: np.empty(shape, output.dtype) for name, shape, output in self.variables}
         for block in self.blocks(lengths):
             before()
             for part in block.parts:
                 for name, array in part.step.compute(block.values, threads).items():
-                    found[name][part.region] = array
-        return found
+                    result[name][part.region] = array
+        return result
 
     def empty(self) -> "xr.Dataset":
         """The labelled Dataset with lazy variables, of which none is computed."""
         with needed("a sweep", "scale"):
             import dask.array as da
 
-        sizes = self.sizes
         lazy = {
-            name: da.empty([sizes[n] for n in step.dims], dtype=output.dtype, chunks=-1)
-            for step in self.all
-            for name, output in step.outputs.items()
+            name: da.empty(shape, dtype=output.dtype, chunks=-1) for name, shape, output in self.variables
         }
         return self.dataset(lazy)
 
     def dataset(self, arrays: Mapping[str, Array]) -> "xr.Dataset":
         """The variables as a labelled Dataset."""
-        outer, branch = self.outer, self.branch
+        outer, reduced = self.outer, self.reductions is not None
         kept = {n: array for n, array in outer.axes.items() if not array.ndim or n in self.dims}
         own, beside = (
             {n: (s.dims, arrays[n], told.attributes) for s in some for n, told in s.outputs.items()}
             for some in (self.steps, self.beside)
         )
-        if self.reductions is None:
-            shown = {name: own[name] for name in outer.shown if name in own}
-            found = labelled(shown, kept, branch, self.accuracy)
-        else:
-            found = labelled({}, kept, branch)
-            step, *_ = self.steps
-            accuracy = step.of.wanted.accuracy if isinstance(step, Reduced) else "standard"
-            found.attrs |= provenance(own, kept, branch, accuracy, of=outer.names)
-            found = found.assign(own)
-        found = with_loads(found, outer.loads if self.steps else {})
-        return found.assign(beside) if beside else found
+        shown = own if reduced else {name: own[name] for name in outer.shown if name in own}
+        result = labelled(shown, kept, self.branch, self.accuracy, outer.names if reduced else ())
+        result = with_loads(result, outer.loads if self.steps else {})
+        return result.assign(beside) if beside else result
 
 
 def plan_of(outer: Outer, branch: int, accuracy: Any, reductions: Reductions | None = None) -> Plan:
     """The plan of a grid, or of what is taken of it; it chooses all kernels, and runs nothing."""
     if reductions is not None:
         dims = tuple(name for name in outer.dimensions if name not in reductions.axes)
-        return Plan(
-            outer, branch, accuracy, reduced_of(outer, branch, accuracy, reductions), dims, reductions
-        )
+        steps = reduced_of(outer, branch, accuracy, reductions)
+        return Plan(outer, branch, accuracy, steps, dims, reductions)
     groups = outer.groups()
     steps = tuple(points_of(names, outer, along, branch, accuracy) for names, along in groups)
     return Plan(outer, branch, accuracy, steps, tuple(outer.dimensions))

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..loads.along_motion import SPEEDS
 from ..loads.load import Load, OverY, TableOverTheta, ahead
 from ..loads.resolve import way_of
 from ..loads.stroke import OverStroke
@@ -21,7 +22,7 @@ from ..mechanism.catalogue import quantity
 from ..mechanism.messages import message_of
 from ..mechanism.names import LENGTHS, parts, sensitivity
 from ..runtime.request import BOUNDS, accuracy_of, check_common, request, several
-from .arrays import as_array, broadcast_shape, numeric, refuse_other_labels
+from .arrays import as_array, broadcast_shape, refuse_other_labels
 from .under_loads.request import MOTION, plan_for
 from .values import values
 
@@ -204,7 +205,7 @@ def _force_and_error(
     load: Load, numbers: Mapping[str, Any], branch: int, threads: int | None
 ) -> tuple[Any, Array]:
     """A force from a table, a number at a point, and its error bound."""
-    theta = np.asarray(numeric("theta", numbers["theta"], ("quality",)))
+    theta = as_array("theta", numbers["theta"], ("theta",), ("quality",))
     if isinstance(load, TableOverTheta):
         room = 4.0 * ROUNDED_ONCE * (np.abs(theta) + load.period)
         here, *beside = (load.both(at)[0] for at in (theta, theta - room, theta + room))
@@ -214,7 +215,7 @@ def _force_and_error(
     names = ["Y", *([load.centre] if isinstance(load, OverStroke) else [])]
     errors = [np.asarray(_quality(name, given, branch, threads).error_bound) for name in names]
     motion = values(list(load.motion()), given, branch, threads=threads)
-    speeds = {n: numeric(n, numbers[n], ("quality",)) for n in ("omega0", "omega", "alpha") if n in numbers}
+    speeds = {n: as_array(n, numbers[n], (n,), ("quality",)) for n in SPEEDS if n in numbers}
     x = np.asarray(load.along(motion))
     room = sum(errors) + 2.0 * ROUNDED_ONCE * np.abs(x)
     way = ahead(motion, way_of(speeds))

@@ -19,9 +19,10 @@ from ..mechanism.constants import constants
 from ..mechanism.names import LENGTHS, STATUS, sensitivity
 from ..mechanism.own import Register, register, using
 from ..mechanism.own_lines import has_kinks
+from ..runtime.executor import have_wide_margins
 from ..runtime.kernels import STRUCTURAL_ZEROS
 from ..runtime.request import Request, accuracy_of, is_steady, request
-from ..runtime.threads import have_wide_margins, run_parts
+from ..runtime.threads import run_parts
 from ..support.progress import Portions, progress_bar
 from .course import course_of
 from .jumps import at_jumps

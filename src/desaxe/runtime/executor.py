@@ -1,4 +1,11 @@
-"""The executor: kernels by key, compiled once a process and kept as long as something can call them."""
+"""The executor: kernels by key, compiled once a process, run over blocks of arrays.
+
+A kernel lives as long as something can call it. The points that it leaves over get a second answer: large
+angles, and those that rounding decides. An angle beyond what the written-out sine reduces exactly takes that
+of the C library. The last angle that a mechanism reaches falls between two doubles, and next to it the sine's
+last bits say on which side an angle lies: there twice the digits decide. No value depends on which other
+points are in a call.
+"""
 
 import math
 import struct
@@ -11,13 +18,26 @@ import numpy as np
 from ..compiler.kernel import Kernel
 from ..compiler.llvm.machine import Code, compiled, lanes
 from ..compiler.llvm.nest import HEAD, NAME, Entry, module_text
-from ..mechanism.constants import limit_of
+from ..mechanism.constants import double_constants, limit_of
+from ..mechanism.names import LENGTHS
+from ..mechanism.own_lines import not_extended
+from ..mechanism.program import Variant
 from ..support.forks import ForkSafeLock
 from ..support.recent import Recent
 from ..support.signals import finished
-from .kernels import KernelKey, kernel_of
+from .kernels import (
+    REACH,
+    SPARE,
+    KernelKey,
+    all_have_wide_margins,
+    has_near_limit,
+    kernel_of,
+    wide_margins_of,
+)
+from .threads import LEAST_BLOCK, in_blocks, least_of
 
 MOST_KEPT = 256  # kernels that nobody else keeps
+AT_A_TIME = 2**20  # points that are answered again
 _bytes_of = c_char.from_buffer
 _CALL = CFUNCTYPE(c_int64, c_char_p, c_char_p, c_char_p, c_char_p)  # lets go of the GIL while it runs
 
@@ -108,3 +128,107 @@ def compiled_kernel(key: KernelKey, arguments: Sequence[str] | None = None) -> C
     written_out = key.accuracy != "extended" and not key.far
     angle = "theta" if written_out and "theta" in dict(key.axis_of) else None
     return CompiledKernel(kernel_of(key), arguments, angle, limit_of(key.accuracy))
+
+
+# ---- blocks, and points that are left over -------------------------------------------------------------
+
+
+def run_in_blocks(
+    key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], threads: int | None
+) -> None:
+    """Run the kernel of a key over its outermost axis in as many blocks as there are threads."""
+    kernel = kernel_for(key)
+    least = LEAST_BLOCK if key.accuracy == "extended" else least_of(len(outs))
+    if outs[0].size < 2 * least:  # too few for a second thread
+        _run(kernel, key, values, outs)
+        return
+    outer = {name for name, axis in key.axis_of if axis == 0}
+
+    def block(start: int, stop: int) -> None:
+        part = {name: v[start:stop] if name in outer else v for name, v in values.items()}
+        _run(kernel, key, part, [out[start:stop] for out in outs])
+
+    in_blocks(block, outs[0].shape[0], outs[0].size, threads, least)
+
+
+def have_wide_margins(form: Variant, ec: Any, AB: Any, BC: Any) -> bool:
+    """True if all designs of these columns have wide margins."""
+    columns = dict(zip(LENGTHS, (ec, AB, BC), strict=True))
+    if not ec.size or all_have_wide_margins(form, **columns):
+        return bool(ec.size)
+    wide = np.empty(ec.size, np.int8)
+    key = KernelKey(*wide_margins_of(form), tuple((name, 0) for name in sorted(LENGTHS)), 1)
+    run_in_blocks(key, columns, [wide], 1)
+    return bool(wide.all())
+
+
+def _run(kernel: CompiledKernel, key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> None:
+    """Run a kernel, and answer the points that it leaves over."""
+    if kernel.run(values, outs):
+        settle(key, values, outs)
+
+
+def has_large_angles(angles: Any) -> bool:
+    """True if an angle is beyond what the written-out sine and cosine reduce exactly."""
+    limit = limit_of("standard")
+    # Where their squares add up to less, none is. No test is quicker, and this one starts no threads.
+    if np.einsum("i,i->", angles, angles) < 0.5 * limit * limit:
+        return False
+    sizes = np.abs(angles)
+    return bool(np.any((sizes > limit) & (sizes < np.inf)))
+
+
+def settle(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> None:
+    """Answer the points again that a call of a key's kernel left over."""
+    if has_near_limit(key):
+        _in_parts(key, values, outs)
+    axis = dict(key.axis_of).get("theta")
+    if axis is not None and not key.far and key.accuracy != "extended":
+        _with_large_angles(key, values, outs, axis)
+
+
+def _with_large_angles(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], axis: int) -> None:
+    """Compute the points with large angles by the sine of the C library."""
+    size = np.abs(values["theta"])
+    rows = np.flatnonzero((size > limit_of(key.accuracy)) & (size < np.inf))
+    if not rows.size:
+        return
+    axis_of = dict(key.axis_of)
+    chosen = {n: v[rows] if axis_of.get(n) == axis else v for n, v in values.items()}
+    answers = [np.empty((*out.shape[:axis], rows.size, *out.shape[axis + 1 :]), out.dtype) for out in outs]
+    far = key._replace(far=True)
+    if kernel_for(far).run(chosen, answers):
+        _in_parts(far, chosen, answers)
+    for out, answer in zip(outs, answers, strict=True):
+        out[(slice(None),) * axis + (rows,)] = answer
+
+
+def _in_parts(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> None:
+    """Recompute the undecided points of a kernel's call."""
+    if not_extended(key.form.own):
+        return
+    axis_of = dict(key.axis_of)
+    length, row = outs[0].shape[0], max(1, outs[0].size // outs[0].shape[0])
+    step = max(1, AT_A_TIME // row)
+    for start in range(0, length, step):
+        part = slice(start, start + step)
+        here = {name: value[part] if axis_of.get(name) == 0 else value for name, value in values.items()}
+        _decide(key, here, [out[part] for out in outs], axis_of)
+
+
+def _decide(
+    key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], axis_of: Mapping[str, int]
+) -> None:
+    reach, unsure = (np.empty(outs[0].shape) for _ in REACH)
+    kernel_for(key._replace(names=REACH, form=key.form._replace(under=None))).run(values, [reach, unsure])
+    undecided = (np.abs(reach) <= SPARE * unsure) & (unsure > 0.0)  # where that is 0, the reach is exact
+    places = np.nonzero(undecided)
+    chosen = {n: value[places[axis_of[n]]] if n in axis_of else value for n, value in values.items()}
+    known = np.abs(chosen["theta"]) <= double_constants().limit  # not all angles can be reduced as well
+    if places[0].size and np.any(known):
+        flat = tuple((name, 0) for name in sorted(axis_of))
+        exact = key._replace(accuracy="extended", axis_of=flat, axes=1, far=False)
+        answers = [np.empty(places[0].size, out.dtype) for out in outs]
+        kernel_for(exact).run(chosen, answers)
+        for out, answer in zip(outs, answers, strict=True):
+            out[places] = np.where(known, answer, out[places])

@@ -15,9 +15,8 @@ from ..compiler.llvm.machine import compiled
 from ..mechanism.names import STATUSES
 from ..support.forks import imported
 from ..support.signals import finished
-from .executor import CompiledKernel, compiled_kernel
+from .executor import CompiledKernel, compiled_kernel, settle
 from .kernels import KernelKey
-from .left_over import settle
 
 Array = NDArray[Any]
 DOUBLE, BYTE = 12, 1  # NumPy's numbers of these types

@@ -4,18 +4,14 @@ No block runs for long: between two of them an interrupt is heard, and it stops 
 """
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextvars import copy_context
 from itertools import pairwise
 from threading import Event
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from ..mechanism.names import LENGTHS
-from ..mechanism.program import Variant
 from ..support.forks import IMPORTS, in_child
 from ..support.signals import put_off
-from .executor import CompiledKernel, kernel_for
-from .kernels import KernelKey, all_have_wide_margins, wide_margins_of
 
 if TYPE_CHECKING:
     from concurrent.futures import Future, ThreadPoolExecutor
@@ -56,47 +52,6 @@ def _forget_pools() -> None:
 
 
 in_child(_forget_pools)
-
-
-def run_in_blocks(
-    key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], threads: int | None
-) -> None:
-    """Run the kernel of a key over its outermost axis in as many blocks as there are threads."""
-    kernel = kernel_for(key)
-    least = LEAST_BLOCK if key.accuracy == "extended" else least_of(len(outs))
-    if outs[0].size < 2 * least:  # too few for a second thread
-        _run(kernel, key, values, outs)
-        return
-    outer = {name for name, axis in key.axis_of if axis == 0}
-
-    def block(start: int, stop: int) -> None:
-        part = {name: v[start:stop] if name in outer else v for name, v in values.items()}
-        _run(kernel, key, part, [out[start:stop] for out in outs])
-
-    in_blocks(block, outs[0].shape[0], outs[0].size, threads, least)
-
-
-def have_wide_margins(form: Variant, ec: Any, AB: Any, BC: Any) -> bool:
-    """True if all designs of these columns have wide margins."""
-    with IMPORTS:
-        import numpy as np
-
-    columns = dict(zip(LENGTHS, (ec, AB, BC), strict=True))
-    if not ec.size or all_have_wide_margins(form, **columns):
-        return bool(ec.size)
-    wide = np.empty(ec.size, np.int8)
-    key = KernelKey(*wide_margins_of(form), tuple((name, 0) for name in sorted(LENGTHS)), 1)
-    run_in_blocks(key, columns, [wide], 1)
-    return bool(wide.all())
-
-
-def _run(kernel: CompiledKernel, key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> None:
-    """Run a kernel, and answer the points that it leaves over."""
-    if kernel.run(values, outs):
-        with IMPORTS:
-            from .left_over import settle
-
-        settle(key, values, outs)
 
 
 def least_of(values: int) -> int:

@@ -20,8 +20,7 @@ from ...mechanism.names import STATUSES
 from ...mechanism.own import using
 from ...mechanism.program import digest
 from ...mechanism.quantity_units import UnitSystem
-from ...runtime.executor import is_ready
-from ...runtime.left_over import has_large_angles
+from ...runtime.executor import has_large_angles, is_ready
 from ...runtime.threads import LEAST_BLOCK, available
 from ...support.forks import IMPORTS
 from ...sweeps.request import sweep_of
