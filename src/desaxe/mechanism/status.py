@@ -25,8 +25,7 @@ class PointStatus(Status):
 
     Decided by `derive/stable.py` (0 to 3), `compiler/passes/guard.py` (4), `derive/dynamics.py` (5, 6: in the
     place of the first by `runtime/request.py`, where a force is requested); next to a limit angle in
-    double-double by `runtime/left_over.py`, which `runtime/point.py`, `runtime/threads.py` and
-    `runtime/left_over.py` call.
+    double-double by `runtime/point.py` and `runtime/executor.py`.
     """
 
     OK = 0, "ok"

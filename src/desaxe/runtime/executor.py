@@ -74,7 +74,7 @@ class CompiledKernel:
         return self._pack_data(repair, clear, *[values[name] for name in self.scalars])
 
     def run(self, values: Mapping[str, Any], outs: Sequence[Any]) -> int:
-        """Fill `outs`, arrays over the axes; return how many points are left (see `left_over`)."""
+        """Fill `outs`, arrays over the axes; return how many points are left (see `settle`)."""
         given = [values[name] for name in self.arguments]
         arrays = [*given, *outs]
         steps = [array.strides[-1] for array in arrays]
@@ -168,67 +168,41 @@ def _run(kernel: CompiledKernel, key: KernelKey, values: Mapping[str, Any], outs
         settle(key, values, outs)
 
 
-def has_large_angles(angles: Any) -> bool:
-    """True if an angle is beyond what the written-out sine and cosine reduce exactly."""
-    limit = limit_of("standard")
-    # Where their squares add up to less, none is. No test is quicker, and this one starts no threads.
-    if np.einsum("i,i->", angles, angles) < 0.5 * limit * limit:
-        return False
-    sizes = np.abs(angles)
-    return bool(np.any((sizes > limit) & (sizes < np.inf)))
-
-
 def settle(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> None:
-    """Answer the points again that a call of a key's kernel left over."""
-    if has_near_limit(key):
-        _in_parts(key, values, outs)
-    axis = dict(key.axis_of).get("theta")
-    if axis is not None and not key.far and key.accuracy != "extended":
-        _with_large_angles(key, values, outs, axis)
-
-
-def _with_large_angles(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], axis: int) -> None:
-    """Compute the points with large angles by the sine of the C library."""
-    size = np.abs(values["theta"])
-    rows = np.flatnonzero((size > limit_of(key.accuracy)) & (size < np.inf))
-    if not rows.size:
-        return
-    axis_of = dict(key.axis_of)
-    chosen = {n: v[rows] if axis_of.get(n) == axis else v for n, v in values.items()}
-    answers = [np.empty((*out.shape[:axis], rows.size, *out.shape[axis + 1 :]), out.dtype) for out in outs]
-    far = key._replace(far=True)
-    if kernel_for(far).run(chosen, answers):
-        _in_parts(far, chosen, answers)
-    for out, answer in zip(outs, answers, strict=True):
-        out[(slice(None),) * axis + (rows,)] = answer
-
-
-def _in_parts(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> None:
-    """Recompute the undecided points of a kernel's call."""
-    if not_extended(key.form.own):
-        return
-    axis_of = dict(key.axis_of)
-    length, row = outs[0].shape[0], max(1, outs[0].size // outs[0].shape[0])
-    step = max(1, AT_A_TIME // row)
-    for start in range(0, length, step):
+    """Answer the points again that a call of a key's kernel left over, so many at a time that they fit."""
+    outer = {name for name, axis in key.axis_of if axis == 0}
+    step = max(1, AT_A_TIME * len(outs[0]) // max(1, outs[0].size))
+    for start in range(0, len(outs[0]), step):
         part = slice(start, start + step)
-        here = {name: value[part] if axis_of.get(name) == 0 else value for name, value in values.items()}
-        _decide(key, here, [out[part] for out in outs], axis_of)
+        here = {name: value[part] if name in outer else value for name, value in values.items()}
+        _settle(key, here, [out[part] for out in outs])
 
 
-def _decide(
-    key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], axis_of: Mapping[str, int]
-) -> None:
-    reach, unsure = (np.empty(outs[0].shape) for _ in REACH)
-    kernel_for(key._replace(names=REACH, form=key.form._replace(under=None))).run(values, [reach, unsure])
-    undecided = (np.abs(reach) <= SPARE * unsure) & (unsure > 0.0)  # where that is 0, the reach is exact
-    places = np.nonzero(undecided)
+def _settle(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> None:
+    theta, axis = np.abs(values.get("theta", 0.0)), dict(key.axis_of).get("theta")
+    if axis is not None:
+        theta = theta.reshape([-1 if k == axis else 1 for k in range(key.axes)])
+    if has_near_limit(key) and not not_extended(key.form.own):
+        reach, unsure = (np.empty(outs[0].shape) for _ in REACH)
+        kernel_for(key._replace(names=REACH, form=key.form._replace(under=None))).run(values, [reach, unsure])
+        undecided = (np.abs(reach) <= SPARE * unsure) & (unsure > 0.0)  # where that is 0, the reach is exact
+        undecided &= theta <= double_constants().limit  # not all angles can be reduced as well
+        _answer_again(key._replace(accuracy="extended", far=False), values, outs, undecided)
+    if axis is not None and not key.far and key.accuracy != "extended":
+        large = np.broadcast_to((theta > limit_of(key.accuracy)) & (theta < np.inf), outs[0].shape)
+        _answer_again(key._replace(far=True), values, outs, large)
+
+
+def _answer_again(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], mask: Any) -> None:
+    """Compute some of the points by the kernel of another key."""
+    places = np.nonzero(mask)
+    if not places[0].size:
+        return
+    axis_of = dict(key.axis_of)
+    key = key._replace(axis_of=tuple((name, 0) for name in sorted(axis_of)), axes=1)
     chosen = {n: value[places[axis_of[n]]] if n in axis_of else value for n, value in values.items()}
-    known = np.abs(chosen["theta"]) <= double_constants().limit  # not all angles can be reduced as well
-    if places[0].size and np.any(known):
-        flat = tuple((name, 0) for name in sorted(axis_of))
-        exact = key._replace(accuracy="extended", axis_of=flat, axes=1, far=False)
-        answers = [np.empty(places[0].size, out.dtype) for out in outs]
-        kernel_for(exact).run(chosen, answers)
-        for out, answer in zip(outs, answers, strict=True):
-            out[places] = np.where(known, answer, out[places])
+    answers = [np.empty(places[0].size, out.dtype) for out in outs]
+    if kernel_for(key).run(chosen, answers) and key.far:
+        settle(key, chosen, answers)
+    for out, answer in zip(outs, answers, strict=True):
+        out[places] = answer

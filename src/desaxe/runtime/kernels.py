@@ -105,7 +105,7 @@ def _is_seen(program: Program, angle: str) -> bool:
 
 
 def has_near_limit(key: KernelKey) -> bool:
-    """True if the kernel counts undecided points (see `left_over`)."""
+    """True if the kernel counts undecided points (see `executor.settle`)."""
     return key.accuracy == "standard" and plain_of(key) is not None
 
 
@@ -148,7 +148,7 @@ def _loops_of(key: KernelKey) -> Kernel:
 def counting(key: KernelKey) -> Program:
     """The program of a key with one more output, a flag: the point may need a repair.
 
-    It holds for more points than `left_over` selects, by whatever the two round differently: then the
+    It holds for more points than `executor.settle` selects, by whatever the two round differently: then the
     points that are answered again do not depend on which others are in the same call.
     """
     program = specialise((*key.names, *REACH), key.form, key.fixed)

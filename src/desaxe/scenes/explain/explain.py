@@ -4,7 +4,7 @@ import json
 import shutil
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from math import prod
+from math import inf, prod
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -15,12 +15,13 @@ from ...evaluation.reductions.reduced import AtPlace, Reduced
 from ...loads.load import Load
 from ...loads.words import brief
 from ...mechanism.catalogue import quantity
+from ...mechanism.constants import limit_of
 from ...mechanism.keywords import with_known_keywords
 from ...mechanism.names import STATUSES
 from ...mechanism.own import using
 from ...mechanism.program import digest
 from ...mechanism.quantity_units import UnitSystem
-from ...runtime.executor import has_large_angles, is_ready
+from ...runtime.executor import is_ready
 from ...runtime.threads import LEAST_BLOCK, available
 from ...support.forks import IMPORTS
 from ...sweeps.request import sweep_of
@@ -160,7 +161,7 @@ def _grid(content: Content, plan: Plan) -> dict[str, Any]:
     threads = max(1, min(content.threads or available(), points // LEAST_BLOCK, *[*sizes.values()][:1]))
     result = plan._replace(steps=plan.steps[: None if taken else 1]).bytes
     grid = sum(1 if name in STATUSES else 8 for name in of.key.names) * points
-    large = of.key.far or (angles is not None and has_large_angles(angles.reshape(-1)))
+    large = of.key.far or (angles is not None and bool(_are_large(angles).any()))
     return {
         "points": points,
         "axes": [{"name": n, "size": s} for n, s in sizes.items()],
@@ -183,3 +184,8 @@ def _grid(content: Content, plan: Plan) -> dict[str, Any]:
             "inputs": 8 * max(1, sum(plan.outer.axes[name].size for name in plan.outer.dimensions)),
         },
     }  # fmt: skip
+
+
+def _are_large(angles: Any) -> Any:
+    """Mask of the angles beyond what the written-out sine and cosine reduce exactly."""
+    return (abs(angles) > limit_of("standard")) & (abs(angles) < inf)
