@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.evaluation.axes import outer_of
-from desaxe.evaluation.points import points_of
+from desaxe.evaluation.points import outer_of, points_of
 from tests.effort import cases
 
 MACHINE = {"AB": 0.1, "BC": 0.35, "omega0": 30.0, "m_slider": 2.0, "m_rod": 1.0}

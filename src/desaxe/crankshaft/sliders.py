@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..evaluation.axes import ALWAYS
 from ..evaluation.labels import attributes, labelled
+from ..evaluation.points import ALWAYS
 from ..mechanism.catalogue import quantity
 from ..mechanism.names import parts
 from ..mechanism.own import using

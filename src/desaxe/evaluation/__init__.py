@@ -3,11 +3,9 @@
 evaluate       numbers in, a float out; arrays in, arrays out
 arrays         inputs that broadcast, the loops they vary along, outputs and scratch
 grid           an outer product as a labelled dataset
-axes           its arguments, checked
 chunks         how a grid, or a reduced axis, is cut
-plan           the steps of a grid, its blocks, its dataset
-points         the base class of steps of a plan; a step: values of names by one kernel, loads included
-lazy           a plan as Dask arrays
+plan           the steps of a grid, its blocks, its dataset, lazy or not
+points         the arguments of a grid, checked; steps of a plan: values of names by one kernel
 labels         units and CF attributes
 quality        condition numbers and error bounds, under loads too
 function       a prepared callable of some inputs

@@ -5,17 +5,15 @@ from typing import TYPE_CHECKING, Any, Unpack, overload
 
 from numpy.typing import NDArray
 
-from ..mechanism.inputs import Inputs
+from ..mechanism.inputs import INPUTS, Inputs
 from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LENGTHS
 from ..runtime.request import check_sliders, several, with_named_inputs
-from ..support.forks import IMPORTS
 from .arrays import outputs_for
-from .axes import ARGUMENTS, outer_of
-from .labelled import labelled_axis, vary_together
+from .labelled import is_labelled
 from .labels import import_xarray, input_attributes, provenance, with_loads
-from .plan import plan_of
-from .points import points_of
+from .plan import lazy_values, plan_of
+from .points import ARGUMENTS, axis_of, outer_of, points_of
 from .reductions.argument import names_reduced, reductions_of
 from .under_loads.loaded import split_axes
 from .values import values
@@ -42,13 +40,7 @@ def grid(
 
 @overload
 def grid(
-    names: str | Sequence[str],
-    *,
-    branch: int = 1,
-    accuracy: str | float = "standard",
-    threads: int | None = None,
-    out: Array | Mapping[str, Array],
-    **inputs: Unpack[Inputs[Any]],
+    names: str | Sequence[str], *, out: Array | Mapping[str, Array], **inputs: Any
 ) -> dict[str, Array]: ...
 
 
@@ -103,7 +95,7 @@ def grid(
         check_sliders(sliders)
         found: xr.Dataset = sliders.grid(names, inputs, accuracy, out=out, reduce=reduce, chunks=chunks)
         return found
-    if vary_together(inputs):
+    if _vary_together(inputs):
         plain = "is for plain arrays, not for inputs that vary together along a dimension: pass their values"
         _refuse(plain, reduce=reduce, chunks=chunks, out=out)
         check_inputs("grid", inputs, ARGUMENTS)
@@ -123,10 +115,33 @@ def grid(
     plan = plan_of(outer, branch, accuracy, reductions)
     if chunks is None:
         return plan.dataset(plan.values(threads))
-    with IMPORTS:
-        from .lazy import lazy_values
-
     return plan.dataset(lazy_values(plan, chunks, threads))
+
+
+def _vary_together(inputs: Mapping[str, Any]) -> bool:
+    """True if inputs of a grid share a dimension, or a pandas Series has an index with a name."""
+    labelled = (value for value in inputs.values() if is_labelled(value))
+    dims = [dim for value in labelled for dim in value.dims if dim not in inputs]
+    return len(set(dims)) < len(dims) or any(map(_has_named_index, inputs.values()))
+
+
+def _has_named_index(value: Any) -> bool:
+    return hasattr(value, "iloc") and isinstance(getattr(value.index, "name", None), str)
+
+
+def _labelled_axis(name: str, value: Any, names: Sequence[str]) -> "xr.DataArray":
+    """A number without dimensions, or an array along its dimension, its own name or that of its index."""
+    xarray = import_xarray()
+    plain = axis_of(name, value, tuple(INPUTS), names)
+    if is_labelled(value):
+        result: xr.DataArray = value.copy(data=plain)
+    elif _has_named_index(value):
+        result = xarray.DataArray(plain, dims=value.index.name, coords={value.index.name: value.index})
+    else:
+        result = xarray.DataArray(
+            plain, dims=(name,) * plain.ndim, coords={name: plain} if plain.ndim else None
+        )
+    return result
 
 
 def _grid_by_labels(
@@ -138,7 +153,7 @@ def _grid_by_labels(
     of their own.
     """
     numbers, loads = split_axes({name: value for name, value in inputs.items() if value is not None})
-    arrays = {name: labelled_axis(name, value, names) for name, value in numbers.items()}
+    arrays = {name: _labelled_axis(name, value, names) for name, value in numbers.items()}
     given = {**numbers, **{name: array for name, array in arrays.items() if array.ndim}, **loads}
     lengths = {name: given.get(name) for name in (*LENGTHS, "omega0", "omega")}
     given = {**dict.fromkeys(("theta", *lengths)), "alpha": 0.0, **given}

@@ -1,17 +1,12 @@
 """Labelled arrays: DataArrays broadcast by their dimensions, Series by the names of their indices."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from ..mechanism.inputs import INPUTS
 from .arrays import as_array
-from .axes import axis_of
 from .labels import attributes, import_xarray
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def is_labelled(value: Any) -> bool:
@@ -53,29 +48,3 @@ def _refuse_unlabelled(given: Mapping[str, Any], labelled: Mapping[str, Any]) ->
                 f"{name}: an array without labels beside labelled ones of different dimensions, {told}: "
                 "make it an xarray.DataArray too, or pass the .values of all"
             )
-
-
-def vary_together(inputs: Mapping[str, Any]) -> bool:
-    """True if inputs of a grid share a dimension, or a pandas Series has an index with a name."""
-    labelled = (value for value in inputs.values() if is_labelled(value))
-    dims = [dim for value in labelled for dim in value.dims if dim not in inputs]
-    return len(set(dims)) < len(dims) or any(map(_has_named_index, inputs.values()))
-
-
-def _has_named_index(value: Any) -> bool:
-    return hasattr(value, "iloc") and isinstance(getattr(value.index, "name", None), str)
-
-
-def labelled_axis(name: str, value: Any, names: Sequence[str]) -> "xr.DataArray":
-    """A number without dimensions, or an array along its dimension, its own name or that of its index."""
-    xarray = import_xarray("labelled arrays")
-    plain = axis_of(name, value, tuple(INPUTS), names)
-    if is_labelled(value):
-        result: xr.DataArray = value.copy(data=plain)
-    elif _has_named_index(value):
-        result = xarray.DataArray(plain, dims=value.index.name, coords={value.index.name: value.index})
-    else:
-        result = xarray.DataArray(
-            plain, dims=(name,) * plain.ndim, coords={name: plain} if plain.ndim else None
-        )
-    return result

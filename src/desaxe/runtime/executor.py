@@ -169,7 +169,7 @@ def _run(kernel: CompiledKernel, key: KernelKey, values: Mapping[str, Any], outs
 
 
 def settle(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> None:
-    """Answer the points again that a call of a key's kernel left over, so many at a time that they fit."""
+    """Answer again the points that a call of a key's kernel has left, a million at a time."""
     outer = {name for name, axis in key.axis_of if axis == 0}
     step = max(1, AT_A_TIME * len(outs[0]) // max(1, outs[0].size))
     for start in range(0, len(outs[0]), step):

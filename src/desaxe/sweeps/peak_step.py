@@ -8,9 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.axes import Outer
 from ..evaluation.labels import Output, attributes, side_attributes
-from ..evaluation.points import Step
+from ..evaluation.points import Outer, Step
 from ..loads.angles import cycle
 from ..mechanism.names import sensitivity
 from ..mechanism.own import Definition, using

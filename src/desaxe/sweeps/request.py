@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from numpy.typing import NDArray
 
 from ..definitions.tables import text_of
-from ..evaluation.axes import Outer, outer_of
 from ..evaluation.chunks import chunk_lengths, uniform
 from ..evaluation.plan import Plan, margin_of, plan_of
+from ..evaluation.points import Outer, outer_of
 from ..evaluation.reductions.argument import Reductions, names_reduced, reductions_of
 from ..mechanism.program import digest
 from ..runtime.request import accuracy_of, several

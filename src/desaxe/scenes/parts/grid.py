@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...evaluation.axes import outer_of
 from ...evaluation.plan import Plan, plan_of
+from ...evaluation.points import outer_of
 from ...support.forks import IMPORTS
 from ...support.progress import Steps
 from ...sweeps.peak_step import PeakRequest
