@@ -11,7 +11,7 @@ from ..mechanism.names import LOADS
 from ..mechanism.own import used_by, using
 from ..mechanism.slips import warn_of_slips
 from ..scenes.document.page import Page, checked, require_document, write_page
-from ..scenes.run import compute
+from ..scenes.scene import compute
 from ..support.files import as_path
 from ..support.progress import Steps
 from .scenes import data_of, with_inputs

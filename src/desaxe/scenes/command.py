@@ -12,8 +12,7 @@ from ..support.progress import progress_bar
 from ..support.shown import printable
 from .document.page import Page, checked
 from .document.results import files_text, results_text
-from .run import compute, steps_of, write_files
-from .scene import Scene
+from .scene import Scene, compute, steps_of, write_files
 from .scene import scene as scene_of
 
 

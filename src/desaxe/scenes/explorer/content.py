@@ -23,7 +23,7 @@ from ...mechanism.names import CENTRES, LENGTHS, LOADS, PARAMETERS, joined, part
 from ...mechanism.own import Definition, used_by, using
 from ...mechanism.program import program_of
 from ...mechanism.quantity_units import SI, UnitSystem
-from ...runtime.request import Request, request
+from ...runtime.request import request
 from ...runtime.specialise import specialise
 
 Value = float | tuple[float, ...]
@@ -173,7 +173,8 @@ def _function(
 ) -> PageFunction:
     plan = plan_of(tuple(names), loads, "omega" in given, "mu" in given)
     every = tuple(dict.fromkeys((*plan.names, *plan.motion)))
-    asked = _request(every, given, branch)
+    free = dict.fromkeys(given, 1.0) | {"theta": 1.0}  # every given input stays variable
+    asked = request(every, free, branch, "standard")
     program = specialise(asked.names, asked.form, asked.fixed)
     if plan.loads:
         way = TurningSense("omega", "alpha") if "omega" in given else TurningSense("omega0")
@@ -206,11 +207,6 @@ def closed_functions(branch: int) -> dict[str, str]:
         name: emit_javascript(program._replace(inputs=LENGTHS), f"of_{name}")
         for name, program in forms.items()
     }
-
-
-def _request(names: tuple[str, ...], given: Mapping[str, Value], branch: int) -> Request:
-    """The request in which every given input stays variable."""
-    return request(names, dict.fromkeys(given, 1.0) | {"theta": 1.0}, branch, "standard")
 
 
 def _angles(given: Mapping[str, Value], cycle: float) -> tuple[float, float]:

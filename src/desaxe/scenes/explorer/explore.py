@@ -15,7 +15,7 @@ from ...mechanism.quantity_units import UnitSystem
 from ...runtime.request import as_number, check_common, several
 from ...support.forks import IMPORTS
 from ...support.written import require_path
-from .content import FORCES, PageContent, Value, content, forces_first, is_loaded
+from .content import FORCES, STATE, PageContent, Value, content, forces_first, is_loaded
 from .write import write_page
 
 TITLE = "Offset slider-crank"
@@ -55,7 +55,7 @@ def explore(
     Returns the path. On the page lengths, speed and acceleration can be changed; it draws the mechanism
     to scale and quantities over the crank angle, with the numbers of `evaluate`: from the same Program,
     emitted as JavaScript. Raises ValueError or TypeError, which name what is wrong; needs the extra
-    `explore`, and `scene` for a scene.
+    `explore`.
 
         dx.explore("examples/compactor.toml", "explorer.html")
         dx.explore(ec=["0 mm", "150 mm"], AB="125 mm", BC="350 mm", omega0="1500 rpm")
@@ -101,16 +101,14 @@ def _of_scene(source: Any, names: Iterable[str] | None) -> PageContent:
 
     known = source if isinstance(source, Scene) else scene(source)
     inside = known.content
-    asked = [*inside.outputs, *(peak.quantity for peak in inside.peaks)]
-    asked += [picture.quantity for picture in inside.pictures]
-    title = inside.title or TITLE
-    shown = [name for name in asked if name not in ("status", "margin")]
-    inputs: dict[str, Any] = dict(inside.inputs)
+    requests: tuple[Any, ...] = (*inside.peaks, *inside.pictures)
+    asked = [*inside.outputs, *(one.quantity for one in requests)]
+    shown = [name for name in asked if name not in STATE]
     with using(inside.definitions):
-        if is_loaded(inputs):
-            shown = forces_first(shown, "omega" in inputs)
-        found = content(title, inside.branch, inputs, shown or START, names)
-    return found._replace(units=inside.units, fields=known.shown_in)
+        if is_loaded(inside.inputs):
+            shown = forces_first(shown, "omega" in inside.inputs)
+        page = content(inside.title or TITLE, inside.branch, inside.inputs, shown or START, names)
+    return page._replace(units=inside.units, fields=known.shown_in)
 
 
 def _value(name: str, given: Any) -> Value:

@@ -22,6 +22,7 @@ from .content import PageContent, closed_functions, left_out_text
 
 # In the order in which they build on each other.
 SCRIPTS = ("numbers", "designs", "words", "mechanism", "charts", "controls", "files", "main")
+ABOUT = ("unit", "meaning", "least", "limit", "section")  # what a page knows of an input
 # A page repeats its lines for each quantity; what they mean stands in generated/program.py.
 _COMMENT = re.compile(r"^\s*//.*\n|(?<=;) // .*", re.MULTILINE)
 
@@ -60,17 +61,11 @@ def _program(content: PageContent) -> str:
     sources = [*closed.values(), *(function.source for function in content.functions)]
     names = [*closed, *(function.quantity for function in content.functions)]
     arrays = arrays_of({name: load.arrays() for name, load in content.loads.items()})
-    return "\n".join(
-        [
-            HEADER,
-            *([TABLES] if arrays else []),
-            *(f"const {name} = {json.dumps([*column])};" for name, column in arrays.items()),
-            _COMMENT.sub("", "\n".join(sources)),
-            "const FUNCTIONS = {",
-            *(f"  {name}: of_{name}," for name in names),
-            "};",
-        ]
-    )
+    columns = [f"const {name} = {json.dumps([*column])};" for name, column in arrays.items()]
+    rows = [f"  {name}: of_{name}," for name in names]
+    code = _COMMENT.sub("", "\n".join(sources))
+    lines = [HEADER, *[TABLES] * bool(arrays), *columns, code, "const FUNCTIONS = {", *rows, "};"]
+    return "\n".join(lines)
 
 
 def _data(content: PageContent) -> dict[str, Any]:
@@ -86,16 +81,8 @@ def _data(content: PageContent) -> dict[str, Any]:
         "sizes": {**_sizes(content.fields), **_sizes(content.units)},
         "shown": content.shown,
         "inputs": {
-            name: {
-                "unit": row.unit,
-                "meaning": row.meaning,
-                "least": row.least,
-                "limit": row.limit,
-                "section": row.section,
-                "given": name in content.given,
-            }
+            name: {"given": name in content.given, **{key: getattr(INPUTS[name], key) for key in ABOUT}}
             for name in content.designs[0]
-            for row in (INPUTS[name],)
         },
         "dimensions": {unit: name.replace(" ", "_") for name, unit in DIMENSIONS.items()},
         "parameters": {name: row.unit for name, row in INPUTS.items()},

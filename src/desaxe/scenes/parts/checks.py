@@ -10,8 +10,16 @@ from ...mechanism.catalogue import quantity
 from ...mechanism.quantity_units import UnitSystem
 from ...units.parse import factor_to_si
 from ...units.text import split_quantity
-from ..reading.needs import needs_of, require, require_known, single, with_others
-from ..reading.values import Value, design_of, with_unit_in
+from ..reading.values import (
+    Value,
+    design_of,
+    needs_of,
+    require,
+    require_known,
+    single,
+    with_others,
+    with_unit_in,
+)
 from ..schema import SceneError, shown
 from ..setting import Setting
 

@@ -17,8 +17,18 @@ from ...mechanism.quantity_units import UnitSystem
 from ...peaks.peak import peak
 from ...support.progress import Steps
 from ...sweeps.peak_step import WORDS, attributes_beside, slope_attributes
-from ..reading.needs import OPTIONAL, needs_of, require, require_known, with_others
-from ..reading.values import Value, design_of, number_of, only_inputs, values_of
+from ..reading.values import (
+    OPTIONAL,
+    Value,
+    design_of,
+    needs_of,
+    number_of,
+    only_inputs,
+    require,
+    require_known,
+    values_of,
+    with_others,
+)
 from ..schema import SceneError, shown
 from ..setting import PlanRow, Setting, columns_of
 from .checks import Printed, read_percentage

@@ -11,8 +11,16 @@ from ...evaluation.in_units import in_units
 from ...mechanism.inputs import INPUTS
 from ...mechanism.quantity_units import UnitSystem
 from ...support.forks import IMPORTS
-from ..reading.needs import require_for_grid, require_known, single, with_others
-from ..reading.values import Value, design_of, only_inputs, values_of
+from ..reading.values import (
+    Value,
+    design_of,
+    only_inputs,
+    require_for_grid,
+    require_known,
+    single,
+    values_of,
+    with_others,
+)
 from ..schema import SceneError, hint, shown
 from ..setting import PlanRow, Setting
 from .grid import arrays_of

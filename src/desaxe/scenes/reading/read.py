@@ -29,8 +29,7 @@ from ..parts.peaks import peak_of
 from ..parts.pictures import picture_of
 from ..schema import SECTIONS, SceneError, check, shown
 from .loads import force_of, without_objects
-from .needs import require_for_grid, require_known
-from .values import Value, values_of, written_inputs
+from .values import Value, require_for_grid, require_known, values_of, written_inputs
 
 PICTURES = (".png", ".svg", ".pdf")
 DATA = (".nc", ".zarr", ".csv", ".xlsx", ".npz")

@@ -1,4 +1,4 @@
-"""The inputs as they are written in a scene: in SI units, and the units of their texts."""
+"""The inputs as they are written in a scene: in SI units, the units of their texts, and what needs them."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from decimal import Decimal
@@ -7,10 +7,14 @@ from math import floor
 from typing import Any
 
 from ...loads.load import Load
+from ...mechanism.catalogue import law_name, of_design, quantity
 from ...mechanism.inputs import INPUTS, Input
+from ...mechanism.names import FORCE_STATUS, LENGTHS, LOADS, STATUS
+from ...mechanism.program import Variant, program_of
 from ...mechanism.quantity_units import SI, UnitSystem
 from ...mechanism.ranges import Between
 from ...mechanism.read import read
+from ...runtime.request import needs_no_speed
 from ...units.parse import exact
 from ...units.system import DIMENSIONS
 from ...units.text import split_quantity, with_unit_of
@@ -19,6 +23,7 @@ from .spread import MOST, spread
 
 Value = float | tuple[float, ...] | Load
 
+OPTIONAL = ("alpha", *LOADS)  # 0 where they are not given, or half of a length
 ENDS = ("start", "stop", "step")
 WORDS = ("printed", "quantities", "reduce")  # tables whose texts are no values of inputs
 # What the text of an input says of all quantities of its dimension; a rate does not follow the lengths.
@@ -141,3 +146,59 @@ def _written_units(part: Any, key: str = "") -> Iterator[tuple[str, str]]:
         unit = split_quantity(part)[1]
         if unit:
             yield key, unit
+
+
+# ---- what quantities need ------------------------------------------------------------------------
+
+
+def require_known(key: str, name: str, state: bool) -> None:
+    """Refuse a name that is no quantity, under the law or for a given state."""
+    try:
+        quantity(name, state)
+    except ValueError as error:
+        raise SceneError(f"{key} = {shown(name)}: {error}") from None
+
+
+def needs_of(names: Iterable[str], inputs: Mapping[str, Any]) -> tuple[str, ...]:
+    """The inputs that quantities can use, under the law or for a given state; a speed where they need one."""
+    state = "omega" in inputs
+    law = tuple(law_name(name) if state else name for name in names)
+    if "mu" in inputs:  # then the status includes that of friction
+        law = tuple(FORCE_STATUS if name == STATUS else name for name in law)
+    left = {"branch", *({"omega0"} - set(inputs) if needs_no_speed(law) else ())}
+    return tuple(name for name in program_of(law, Variant(state)).inputs if name not in left)
+
+
+def require(key: str, needs: Iterable[str], what: str, inputs: Mapping[str, Any]) -> list[str]:
+    """The needed inputs from those given; SceneError for a missing one."""
+    for name in needs:
+        if name not in inputs and name not in OPTIONAL:
+            raise SceneError(f"{key}: {what} needs {INPUTS[name].section}.{name}, which is missing")
+    return [name for name in needs if name in inputs]
+
+
+def require_for_grid(key: str, names: tuple[str, ...], inputs: Mapping[str, Any]) -> list[str]:
+    """The needed inputs of a grid, which has `status` and `margin` too; they need no speed."""
+    still = "theta" not in inputs and all(name == STATUS or of_design(name) for name in names)
+    used = needs_of([name for name in names if not (still and name == STATUS)], inputs)
+    needs = dict.fromkeys([*used, *LENGTHS, *(() if still else ("theta",))])
+    return require(key, needs, ", ".join(names), inputs)
+
+
+def with_others(inputs: Mapping[str, Value], other: Mapping[str, Value]) -> dict[str, Value]:
+    """Replace inputs by others; a given state replaces the law, and vice versa."""
+    swapped = {"omega": "omega0", "omega0": "omega"}
+    replaced = {swapped[name] for name in other if name in swapped}
+    return {**{name: value for name, value in inputs.items() if name not in replaced}, **other}
+
+
+def single(key: str, names: Iterable[str], inputs: Mapping[str, Value]) -> dict[str, Any]:
+    """Inputs that must be single: a number or a load that varies; SceneError for a list or range."""
+    found: dict[str, Any] = {}
+    for name in names:
+        value = inputs[name]
+        if isinstance(value, tuple):
+            family = f", or family.{name} for a curve of each" if key.startswith("picture") else ""
+            raise SceneError(f"{key}: {name} has {len(value)} values, expected one: give at.{name}{family}")
+        found[name] = value
+    return found
