@@ -1,7 +1,7 @@
 """The name of an own quantity changes nothing: not its type, and not what else a file or a call has."""
 
-import ctypes
 import math
+from contextlib import ExitStack
 
 import numpy as np
 import pytest
@@ -19,39 +19,38 @@ OF_STATUS = ("static_status", "status_of_drive", "out_status", "force_status_now
 HOSTILE = ("double", "NAN", "errno", "end", "value", "place")
 
 
-def scene(name, **more):
-    content = {
-        "outputs": [name, "V_C", "status"],
+@pytest.fixture
+def doubled():
+    """Define names as twice the speed, until the test is over."""
+    with ExitStack() as stack:
+        yield lambda names: [stack.enter_context(defined(name, "2*V_C")) for name in names]
+
+
+def scene(*names):
+    return {
+        "outputs": [*names, "V_C", "status"],
         "mechanism": {"ec": [0.01, 0.02], "AB": POINT["AB"], "BC": POINT["BC"]},
         "motion": {"theta": [0.0, 1.0], "omega0": POINT["omega0"]},
     }
-    return {**content, **more}
 
 
-@pytest.mark.parametrize("name", OF_STATUS)
-def test_a_name_with_status_in_it_is_no_status(name):
-    """At an angle that the kernel cannot reduce, where its answers are repaired."""
+def test_names_with_status_in_them_are_no_status(doubled, tmp_path):
+    """At an angle that the kernel cannot reduce, where its answers are repaired; in C, too."""
     theta = np.array([0.3, 1e17, -3e18])
-    with defined(name, "2*V_C"):
-        found = dx.function([name, "V_C", "status"], inputs=("theta",), **POINT)(theta)
-        both = dx.evaluate([name, "V_C", "status"], theta=theta, **POINT)
-    np.testing.assert_array_equal(found[0], 2.0 * found[1])
-    np.testing.assert_array_equal(both[name], 2.0 * both["V_C"])
-    assert found[2].dtype == both["status"].dtype == np.int8
-    assert not found[2].any()
-
-
-@pytest.mark.parametrize("name", OF_STATUS)
-def test_the_status_in_c_is_the_status(name, tmp_path):
-    with defined(name, "-35*V_C*second", second="1 s/m"):
-        source = dx.compile(scene(name), tmp_path / "press", to="c") / "press.c"
-        loaded = library(source)
-        value = dx.evaluate(name, theta=1.0, **POINT)
-    status, out = point_values(loaded, "press", (1.0, 0.01), 3)
-    assert (status, out[2]) == (0, 0.0)
-    assert out[0] == pytest.approx(value, rel=1e-14)
-    assert point_values(loaded, "press", (math.nan, 0.01), 3)[0] == 4
-    assert ctypes.sizeof(ctypes.c_int) >= 4
+    names = [*doubled(OF_STATUS), "V_C", "status"]
+    by_function = dx.function(names, inputs=("theta",), **POINT)(theta)
+    both = dx.evaluate(names, theta=theta, **POINT)
+    for *values, speed, status in (by_function, [*both.values()]):
+        np.testing.assert_array_equal(values, [2.0 * speed] * len(OF_STATUS))
+        assert status.dtype == np.int8
+        assert not status.any()
+    source = dx.compile(scene(*OF_STATUS), tmp_path / "press", to="c") / "press.c"
+    loaded, count = library(source), len(names)
+    status, out = point_values(loaded, "press", (1.0, 0.01), count)
+    speed = dx.evaluate("V_C", theta=1.0, **POINT)
+    assert (status, out[-1]) == (0, 0.0)
+    assert out[:-1] == pytest.approx([2.0 * speed] * len(OF_STATUS) + [speed], rel=1e-14)
+    assert point_values(loaded, "press", (math.nan, 0.01), count)[0] == 4
 
 
 def test_a_plan_counts_it_as_a_value():
@@ -69,14 +68,13 @@ def test_names_that_the_library_requests_itself_are_taken():
             dx.define(name, "2*V_C")
 
 
-@pytest.mark.parametrize("name", HOSTILE)
-def test_other_names_are_right_in_javascript(name, tmp_path):
-    with defined(name, "2*V_C"):
-        place = dx.compile(scene(name), tmp_path / "press.js", to="javascript")
-        wanted = 2.0 * dx.evaluate("V_C", theta=0.7, **POINT)
-    both, alone = es_module(place, [["evaluate", {"theta": 0.7, "ec": 0.01}], [name, 0.7, 0.01]])
-    assert both["status"] == 0
-    assert both[name] == alone == pytest.approx(wanted, rel=1e-14)
+def test_other_names_are_right_in_javascript(doubled, tmp_path):
+    place = dx.compile(scene(*doubled(HOSTILE)), tmp_path / "press.js", to="javascript")
+    wanted = pytest.approx(2.0 * dx.evaluate("V_C", theta=0.7, **POINT), rel=1e-14)
+    calls = [["evaluate", {"theta": 0.7, "ec": 0.01}], *([name, 0.7, 0.01] for name in HOSTILE)]
+    every, *alone = es_module(place, calls)
+    assert every["status"] == 0
+    assert [every[name] for name in HOSTILE] == alone == [wanted] * len(HOSTILE)
 
 
 @pytest.mark.parametrize(
@@ -93,16 +91,15 @@ def test_a_name_that_would_hide_a_part_of_the_module_is_refused(to, name, tmp_pa
         dx.compile(scene(name), file, to=to)
 
 
-@pytest.mark.parametrize("name", ["kernel", "signature", "length", "x"])
-def test_other_names_are_right_in_python(name, tmp_path):
-    at = (0.7, 0.01)
-    with defined(name, "2*V_C"):
-        numba = imported(dx.compile(scene(name), tmp_path / "press_numba.py"))
-        jax = imported(dx.compile(scene(name), tmp_path / "press_jax.py", to="jax"))
-        wanted = 2.0 * dx.evaluate("V_C", theta=at[0], **POINT)
-    assert numba.point(*at)[0] == getattr(numba, name)(*at) == pytest.approx(wanted, rel=1e-14)
-    with jax_in_doubles():
-        assert float(getattr(jax, name)(*at)) == pytest.approx(wanted, rel=1e-13)
+def test_other_names_are_right_in_python(doubled, tmp_path):
+    at, names = (0.7, 0.01), doubled(["kernel", "signature", "length", "x"])
+    numba = imported(dx.compile(scene(*names), tmp_path / "press_numba.py"))
+    jax = imported(dx.compile(scene(*names), tmp_path / "press_jax.py", to="jax"))
+    wanted = 2.0 * dx.evaluate("V_C", theta=at[0], **POINT)
+    for place, name in enumerate(names):
+        assert numba.point(*at)[place] == getattr(numba, name)(*at) == pytest.approx(wanted, rel=1e-14)
+        with jax_in_doubles():
+            assert float(getattr(jax, name)(*at)) == pytest.approx(wanted, rel=1e-13)
 
 
 def test_a_function_of_a_design_may_be_called_skipped():

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 import desaxe as dx
-from desaxe.cli.checks import derive
+from desaxe.cli.files import derive
 from desaxe.definitions.tables import read_definitions
 from desaxe.mechanism.own import using
 
