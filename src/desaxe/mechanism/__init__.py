@@ -1,7 +1,7 @@
 """The slider-crank by name: inputs, quantities, status codes, the committed program.
 
 names         names of sensitivities, and the lists of parameters; units of derivatives
-inputs        the inputs: meaning, unit, limits
+inputs        the inputs: meaning, unit, limits; units of other arguments and results
 catalogue     the quantities and sensitivities: unit, meaning, source
 read          one reader of numbers, with or without a unit
 keywords      unknown keywords, refused with the one that was meant

@@ -26,8 +26,8 @@ class Quantity(NamedTuple):
 
 # What `events` has besides the quantities of a whole design.
 OF_EVENTS = frozenset((
-    "V_outward", "V_inward", "theta_V_outward", "theta_V_inward", "slow_stroke", "theta_max_pressure_angle",
-    "theta_min_pressure_angle",
+    "V_outward", "V_inward", "theta_V_outward", "theta_V_inward", "slow_stroke",
+    "theta_max_pressure_angle", "theta_min_pressure_angle",
 ))  # fmt: skip
 
 
@@ -136,9 +136,8 @@ def _unknown(name: str, state: bool, own: Register) -> str:
     if not state and law_name(name) in names:
         return f"{name!r} needs a state: give omega= instead of omega0="
     if state and name in names:
-        return (
-            f"{name!r} has no meaning for a given state omega=: ask for {name.replace('omega0', 'omega')!r}"
-        )
+        other = name.replace("omega0", "omega")
+        return f"{name!r} has no meaning for a given state omega=: ask for {other!r}"
     base, parameters = parts(law_name(name))
     if set(parameters) <= set(PARAMETERS) and base in names:
         ordered = sensitivity(base, *parameters)
@@ -152,11 +151,7 @@ def _unknown(name: str, state: bool, own: Register) -> str:
         return f"{name!r} is an input, not a quantity: it has the values that are given"
     if name in OF_EVENTS:
         return f"{name!r} is one of `events`, which takes arrays, too, and no quantity"
-    near = (
-        meant(name, names, 3)
-        or [known for known, (_, meaning, _) in names.items() if f" {name.lower()}" in f" {meaning.lower()}"][
-            :3
-        ]
-    )
-    hint = f"; did you mean {', '.join(near)}?" if near else ""
+    word = f" {name.lower()}"
+    near = meant(name, names, 3) or [one for one, row in names.items() if word in f" {row[1].lower()}"]
+    hint = f"; did you mean {', '.join(near[:3])}?" if near else ""
     return f"unknown quantity {name!r}{hint} (desaxe.quantities() lists them all)"

@@ -97,7 +97,8 @@ def in_si(row: Input, value: Any, system: "UnitSystem | None" = None) -> Any:
         return value if hasattr(value, "iloc") else in_si(row, value.tolist(), system)
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not number and kind not in tuple("fiu"):
-        return _of_sequence(row, value, system)
+        several = system and isinstance(value, Sequence) and not isinstance(value, bytes)
+        return in_si(row, list(value), system) if several else value
     conversion = _conversion(row, value, system)
     if conversion is None or conversion.si == 1:
         return value
@@ -118,16 +119,6 @@ def _with_its_unit(row: Input, value: Any, system: "UnitSystem | None") -> Any:
     if isinstance(value, str) and conversion is not None:
         value = with_unit_of(f"1 {conversion.unit}", value)
     return in_unit(row.name, value, row.unit)
-
-
-def _of_sequence(row: Input, value: Any, system: "UnitSystem | None") -> Any:
-    """A range or another sequence as an array; anything else as it is."""
-    if not isinstance(value, Sequence) or isinstance(value, bytes) or not system:
-        return value
-    with IMPORTS:
-        import numpy as np
-
-    return in_si(row, np.asarray(value), system)
 
 
 def _conversion(row: Input, value: Any, system: "UnitSystem | None") -> "Conversion | None":

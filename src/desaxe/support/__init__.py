@@ -11,7 +11,7 @@ progress       how far long work is, and a bar on the terminal
 version        the version of this installation
 forks          locks and threads that a forked process must not inherit
 signals        what handlers of signals raise, put off until a block is done
-interrupts     long work that Ctrl-C must not cut in half
+interrupts     long compiled work, which an interrupt or a time limit stops
 memory         a check for free memory
 checks         options of calls, checked
 deadline       a time limit

@@ -9,8 +9,6 @@ from typing import Any
 from .checks import time_limit
 from .progress import Progress, progress_bar
 
-LONGEST = 1e9  # seconds: beyond it there is no limit
-
 
 class Deadline:
     """Counts from when it is made; `check` raises TimeoutError when the time is over.
@@ -56,7 +54,3 @@ class Deadline:
     def error(self) -> TimeoutError:
         """Return the error to raise when the time is over."""
         return TimeoutError(f"{self.what}: not done within timeout = {self.seconds:g} s")
-
-    def left(self) -> float | None:
-        """Seconds that are left, as a thread may be waited for; None without a limit."""
-        return max(self._end - time.monotonic(), 0.0) if self._end < LONGEST else None
