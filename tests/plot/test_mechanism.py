@@ -112,12 +112,12 @@ def test_frames_are_points_of_the_dataset(tmp_path):
 
 def test_complaints(tmp_path):
     dataset = dx.grid("a_C", **{**GRID, **DESIGN, "ec": [0.0, 0.1]})
-    with pytest.raises(ValueError, match=r"one design over the crank angle; choose .*sel\(ec=\.\.\.\)"):
+    with pytest.raises(ValueError, match=r"a_C varies with ec too: choose .*sel\(ec=\.\.\.\)"):
         animate(dataset)
-    with pytest.raises(ValueError, match="it needs the dimension theta"):
+    with pytest.raises(ValueError, match="a_C has no dimension 'theta'"):
         animate(dataset.isel(theta=0, ec=0))
     with pytest.raises(ValueError, match="the dataset has no BC"):
-        animate(dataset.drop_vars("BC"))
+        animate(dataset.isel(ec=0).drop_vars("BC"))
     with pytest.raises(ValueError, match="expected two Axes"):
         animate(dataset.isel(ec=0), "a_C", ax=Figure().add_subplot())
     movie = animate(dataset.isel(ec=0), frames=2)

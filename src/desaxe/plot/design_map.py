@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 SIZE = (7.6, 5.2)  # inches
 LEVELS = 12
 GROWS = 1.0  # what lies further from most values than their range grows without bound
-LONG, APART, CLEAR = 0.2, 0.08, 0.03  # shares of the axes: of a line with a label, from others, around it
+APART = 0.08  # of the axes: of a label from others and from the frame
 HATCH, SHADE, LINE = "////", "0.93", "0.25"
 FEASIBLE = (0, 2)  # status: ok, and at a change point
 GEOMETRIC = (0, 1, 2)  # what the lengths alone decide
@@ -104,48 +104,32 @@ def _levels(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], str]:
 
 def _widened(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Fill each NaN next to a number with its value, so that colours reach under the hatching."""
-    wide = values
+    with IMPORTS:
+        from pandas import DataFrame
+
+    wide = DataFrame(values)
     for axis in (0, 1):
-        padded = np.pad(wide, [(1, 1) if k == axis else (0, 0) for k in (0, 1)], constant_values=np.nan)
-        for first in (0, 2):
-            beside = np.take(padded, range(first, first + values.shape[axis]), axis)
-            wide = np.where(np.isnan(wide), beside, wide)
-    return wide
+        wide = wide.ffill(axis=axis, limit=1).bfill(axis=axis, limit=1)
+    return np.asarray(wide, dtype=np.float64)
 
 
 def _label(axes: Any, lines: Any, across: Any, up: Any, values: NDArray[np.float64]) -> None:
-    """Label the contours that are long enough, each where it is furthest from others, if there is space."""
+    """Label contours where they are apart from other labels, the frame and what is infeasible."""
     with IMPORTS:
         from matplotlib.patheffects import withStroke
 
-    ends, none = np.array([(np.min(across), np.min(up)), (np.max(across), np.max(up))]), np.empty((0, 2))
-    size = np.where(np.ptp(ends, axis=0) > 0.0, np.ptp(ends, axis=0), 1.0)
-    scaled = [[(piece - ends[0]) / size for piece in level] for level in lines.allsegs]
-    whole = [np.concatenate([none, *pieces]) for pieces in scaled]
-    labels = none
-    for number, pieces in enumerate(scaled):
-        long = [p for p in pieces if np.linalg.norm(np.diff(p, axis=0), axis=1).sum() > LONG]
-        points = np.concatenate([none, *long])
-        points = points[((points > APART) & (points < 1.0 - APART)).all(axis=1)]
-        column, row = (
-            np.abs(points[:, [k]] * size[k] + ends[0, k] - grid).argmin(axis=1)
-            for k, grid in enumerate((across, up))
-        )
-        points = points[np.isfinite(values[row, column])]
-        gaps = _distances(points, np.concatenate([*whole[:number], *whole[number + 1 :], labels]))
-        gaps = np.where(_distances(points, labels) > 1.5 * APART, gaps, 0.0)
-        if gaps.max(initial=0.0) > CLEAR:
-            labels = np.append(labels, points[[gaps.argmax()]], axis=0)
-    where = [tuple(point) for point in labels * size + ends[0]]
-    for text in axes.clabel(lines, manual=where, fontsize=8) if where else ():
-        text.set_path_effects([withStroke(linewidth=1.5, foreground="0.2")])
-
-
-def _distances(points: NDArray[np.float64], others: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The distance of each point from the nearest of others; 1 where there are none."""
-    far = np.linalg.norm(points[:, None] - others[None], axis=-1)
-    nearest: NDArray[np.float64] = far.min(axis=1, initial=1.0)
-    return nearest
+    low, size = np.array([np.min(across), np.min(up)]), np.array([np.ptp(across) or 1.0, np.ptp(up) or 1.0])
+    labels = np.empty((0, 2))
+    for text in axes.clabel(lines, inline=False, fontsize=8):
+        x, y = text.get_position()
+        place = ((x, y) - low) / size
+        value = values[np.abs(up - y).argmin(), np.abs(across - x).argmin()]
+        crowded = np.linalg.norm(labels - place, axis=1).min(initial=1.0) < 1.5 * APART
+        if crowded or place.min() < APART or place.max() > 1.0 - APART or np.isnan(value):
+            text.remove()
+        else:
+            labels = np.append(labels, [place], axis=0)
+            text.set_path_effects([withStroke(linewidth=1.5, foreground="0.2")])
 
 
 def _hatch(axes: Any, across: Any, up: Any, edge: NDArray[np.float64]) -> None:

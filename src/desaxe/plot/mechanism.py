@@ -16,7 +16,7 @@ from ..support.extras import needed
 from ..support.forks import IMPORTS
 from ..units.system import Conversion
 from .curves import curves
-from .dataset import input_in_si
+from .dataset import choose, input_in_si
 from .picture import Picture
 from .style import BLUE, ORANGE, axes_of, figure_type, finish, head, shown
 
@@ -198,7 +198,7 @@ def animate(
     """
     with needed("plot.animate"):
         from matplotlib.animation import FuncAnimation
-    design = _design(dataset)
+    design = _design(dataset, str(next(iter(dataset), "")) if name is None else name)
     left, right = _axes(design, name is not None, ax)
     theta = input_in_si(dataset["theta"])
     units = UnitSystem.read({"ec": dataset["ec"].attrs.get("units", "m")})
@@ -223,17 +223,12 @@ def animate(
     return Picture([left, right] if moving is not None else left, at(0), movie)
 
 
-def _design(dataset: "xr.Dataset") -> dict[str, float]:
-    missing = [n for n in (*LENGTHS, "theta") if n not in dataset.coords]
+def _design(dataset: "xr.Dataset", name: str) -> dict[str, float]:
+    """The lengths of a dataset over the crank angle alone."""
+    choose(dataset, name, ["theta"])
+    missing = [n for n in LENGTHS if n not in dataset.coords]
     if missing:
         raise ValueError(f"animate: the dataset has no {missing[0]}")
-    others = [str(n) for n in dataset.dims if n != "theta"]
-    if others or "theta" not in dataset.dims:
-        selection = ", ".join(f"{n}=..." for n in others)
-        advice = (
-            f"choose a value first, dataset.sel({selection})" if others else "it needs the dimension theta"
-        )
-        raise ValueError(f"animate: one design over the crank angle; {advice}")
     return {n: float(input_in_si(dataset[n])) for n in LENGTHS}
 
 
