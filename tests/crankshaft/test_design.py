@@ -40,6 +40,19 @@ def test_the_best_phase_for_a_torque_at_an_angle():
     assert best["phase[1]"] == pytest.approx(phases[torque.argmax()], abs=0.02)
 
 
+def test_the_best_phase_for_the_mean_square_of_a_torque():
+    best = THREE.optimize(minimize=("rms", "T_in"), over={"phase[1]": (60, 170)}, starts=1)
+    phases, theta = np.linspace(60.0, 170.0, 1101), np.arange(0.0, 360.0, 3.0)
+    torque = THREE.evaluate("T_in", theta=theta, **{"phase[1]": phases[:, None]})
+    rms = np.sqrt((torque**2).mean(axis=1))
+    assert best["value"] == pytest.approx(rms.min(), rel=1e-6)
+    other = 250.0 - best["phase[1]"]  # the mirror image has the same torque, the other way round
+    assert min(abs(phases[rms.argmin()] - p) for p in (best["phase[1]"], other)) < 0.1
+    assert best["value"] == pytest.approx(
+        THREE.drive(**{"phase[1]": best["phase[1]"]})["torque_rms"], rel=1e-9
+    )
+
+
 def test_peaks_of_many_are_those_of_each():
     changes = {"AB": [0.044, 0.045], "phase[1]": [100.0, 120.0]}
     for kind in ("max", "min", "absmax"):

@@ -18,7 +18,7 @@ from ..simulation.checks import check_inertia, drive_of, follows_the_slider, sca
 from ..simulation.request import Ask, in_time
 from ..simulation.result import Simulation
 from ..support.answer import Answer
-from .cycle import ShaftTurn
+from .cycle import ShaftCycle, ShaftTurn
 from .extreme import extremes_of
 from .motion import ShaftModel
 from .sums import SliderSums, indexed, number
@@ -41,12 +41,20 @@ class Sliders(SliderSums):
         with using(self.definitions):
             return ShaftTurn(caller, self, given)
 
+    def cycles(
+        self, caller: str, name: str, designs: Mapping[str, Any]
+    ) -> tuple[dict[str, str], tuple[int, ...], list[ShaftCycle]]:
+        """The derivatives of a sum by inputs that vary, the shape of the crankshafts, the cycle of each."""
+        given = {n: v for n, v in designs.items() if v is not None and n not in ("sliders", "theta")}
+        shape, rows = _rows(given)
+        each = ({**given, **{n: r[k].item() for n, r in rows.items()}} for k in range(int(np.prod(shape))))
+        cycles = [ShaftCycle(caller, self, inputs) for inputs in each]
+        return {n: f"{name}_wrt_{n}" for n in rows}, shape, cycles
+
     def peak(self, name: str, kind: str, theta: Any, given: Mapping[str, Any]) -> Answer:
         """`desaxe.peak` of the shaft; theta: a range of angles, None for the cycle."""
         with using(self.definitions):
-            arrays = {n: np.asarray(v) for n, v in given.items() if np.ndim(v) and not callable(v)}
-            shape = np.broadcast_shapes(*(a.shape for a in arrays.values()))
-            rows = {n: np.broadcast_to(a, shape).ravel() for n, a in arrays.items()}
+            shape, rows = _rows(given)
 
             def turn_of(k: int) -> ShaftTurn:
                 return ShaftTurn("peak", self, {**given, **{n: r[k].item() for n, r in rows.items()}}, theta)
@@ -126,6 +134,13 @@ def described(name: str) -> dict[str, Any]:
         meaning = MEANING.get(plain) or quantity(plain).meaning
         meaning += "" if index is None else f", slider {index}"
     return {"units": str(unit_of(name)), "long_name": meaning}
+
+
+def _rows(given: Mapping[str, Any]) -> tuple[tuple[int, ...], dict[str, Any]]:
+    """The shape of the inputs that are arrays, and these as rows of it."""
+    arrays = {n: np.asarray(v) for n, v in given.items() if np.ndim(v) and not callable(v)}
+    shape = np.broadcast_shapes(*(a.shape for a in arrays.values()))
+    return shape, {n: np.broadcast_to(a, shape).ravel() for n, a in arrays.items()}
 
 
 def _shaped(found: Any, shape: tuple[int, ...]) -> Any:

@@ -40,14 +40,16 @@ BLOCK = 512  # designs whose panels are in memory at a time
 def average(kind: str, name: str, designs: Mapping[str, Any], branch: int) -> tuple[Array, dict[str, Array]]:
     """The mean or the root of the mean square of a quantity over a turn, and its derivatives."""
     if "sliders" in designs:
-        raise TypeError(f"{kind} of {name}: `drive` has those of a crankshaft's torque, `harmonics` the mean")
-    inputs = _inputs(designs)
-    slopes, rows = _slopes(name, inputs), input_rows(f"{kind} of {name}", inputs)
-    turns = turns_of(f"the {kind} of {name}", rows.loads, MOST_TURNS)
-    cycle = Cycle(rows.numbers, rows.loads, branch, turns)
-    blocks = [np.arange(first, min(first + BLOCK, rows.size)) for first in range(0, rows.size, BLOCK)]
-    averages = [_averages(kind, [name, *slopes.values()], cycle.part(block), slopes) for block in blocks]
-    value, *gradient = np.concatenate(averages, axis=1).reshape(-1, *rows.shape)
+        slopes, shape, cycles = designs["sliders"].cycles(f"{kind} of {name}", name, designs)
+    else:
+        inputs = _inputs(designs)
+        slopes, rows = _slopes(name, inputs), input_rows(f"{kind} of {name}", inputs)
+        turns, shape = turns_of(f"the {kind} of {name}", rows.loads, MOST_TURNS), rows.shape
+        cycle = Cycle(rows.numbers, rows.loads, branch, turns)
+        firsts = range(0, rows.size, BLOCK)
+        cycles = [cycle.part(np.arange(first, min(first + BLOCK, rows.size))) for first in firsts]
+    averages = [_averages(kind, [name, *slopes.values()], cycle, slopes) for cycle in cycles]
+    value, *gradient = np.concatenate(averages, axis=1).reshape(-1, *shape)
     return value, dict(zip(slopes, gradient, strict=True))
 
 
