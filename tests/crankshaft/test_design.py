@@ -53,6 +53,30 @@ def test_the_best_phase_for_the_mean_square_of_a_torque():
     )
 
 
+def test_the_angles_at_which_a_torque_has_a_value():
+    result = THREE.crossings("T_in", value=5.0)
+    theta = np.linspace(0.0, 360.0, 7201)
+    above = THREE.evaluate("T_in", theta=theta) > 5.0
+    changes = np.flatnonzero(above[1:] != above[:-1])
+    assert result["theta"] == pytest.approx(theta[changes] + 0.025, abs=0.026)
+    assert (result["rising"] > 0.0).tolist() == above[changes + 1].tolist()
+    assert THREE.evaluate("T_in", theta=result["theta"]) == pytest.approx(5.0, abs=1e-9)
+    assert result["share"] == pytest.approx(above.mean(), abs=1e-2)
+    for parameter, value in (("AB", 0.045), ("phase[1]", 110.0), ("m_slider[0]", 0.4)):
+        ends = [
+            THREE.crossings("T_in", value=5.0, **{parameter: value * (1 + side * 1e-6)})["theta"]
+            for side in (1, -1)
+        ]
+        slope = (ends[0] - ends[1]) / (2e-6 * value)
+        if "[" in parameter:
+            result = THREE.crossings("T_in", value=5.0, **{parameter: value})
+        assert result["gradient"][parameter] == pytest.approx(slope, rel=1e-5, abs=1e-6 * abs(slope).max())
+    one, own = THREE.crossings("a_C[1]")["theta"], ONE.crossings("a_C")["theta"]
+    assert np.sort(one) == pytest.approx(np.sort((own + 110.0) % 360.0))
+    boxer = dx.Crankshaft(ONE, phase=[0, 180], bank=[0, 180])
+    assert boxer.crossings("F_inertia_Y")["status"] == boxer.crossings("F_inertia_X")["status"] == 3
+
+
 def test_peaks_of_many_are_those_of_each():
     changes = {"AB": [0.044, 0.045], "phase[1]": [100.0, 120.0]}
     for kind in ("max", "min", "absmax"):

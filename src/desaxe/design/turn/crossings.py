@@ -12,12 +12,13 @@ from ...mechanism.inputs import Input
 from ...mechanism.keywords import with_known_keywords
 from ...mechanism.names import LENGTHS, sensitivity
 from ...mechanism.quantity_units import slopes_of, unit_of
-from ...mechanism.read import read_array
+from ...mechanism.read import read, read_array
 from ...mechanism.status import CrossingStatus
 from ...runtime.request import check_common, is_steady
 from ...support.answer import Answer
-from ...support.panels import Array, Panels
+from ...support.panels import NODES, Array, Panels
 from .cycle import MOST_TURNS, Cycle, input_rows
+from .turn import NoCycleError, Turn, turn_of
 
 TOGETHER = 3e-8  # rad: crossings that are nearer are one, or a tangency
 EQUAL = 1e-14  # of the largest value: a difference that is none
@@ -39,13 +40,16 @@ NONE = Crossings(np.empty(0), np.empty(0), np.empty(0), np.nan)
 
 
 @with_known_keywords
-def crossings(name: str, *, value: Any = 0.0, branch: int = 1, **inputs: Any) -> dict[str, Any]:
+def crossings(
+    name: str, *, value: Any = 0.0, branch: int = 1, sliders: Any = None, **inputs: Any
+) -> dict[str, Any]:
     """The crank angles at which a quantity passes through a value, and how long it is above it.
 
     name    any quantity or sensitivity: a force in the rod for its reversal, "T_in", "V_C"
     value   in the quantity's unit
     inputs  as in `evaluate`, without theta: numbers and arrays, which broadcast, for many designs; F_X and
             F_Y may vary with the motion
+    sliders filled in by a `Crankshaft`; what its sliders cancel to rounding is 0
 
     Returns a dict; of several designs the last axis of arrays has the crossings, padded with NaN:
 
@@ -68,12 +72,14 @@ def crossings(name: str, *, value: Any = 0.0, branch: int = 1, **inputs: Any) ->
         >>> [round(float(angle), 6) for angle in reversal["theta"]], round(reversal["share"], 6)
         ([0.0, 3.141593], 0.5)
     """
-    row = Input("value", quantity(name, inputs.get("omega") is not None).unit, "")
     check_common({}, branch)
     if inputs.pop("theta", None) is not None:
         raise TypeError("crossings: theta is the answer; the cycle is that of crank and loads")
     if inputs.get("omega") is None and not is_steady(inputs.get("alpha", 0.0)):
         raise TypeError("crossings: alpha: no turn repeats the one before; give the state, omega and alpha")
+    if sliders is not None:
+        return _of_shaft(name, value, turn_of("crossings", inputs, branch, sliders))
+    row = Input("value", quantity(name, inputs.get("omega") is not None).unit, "")
     rows = input_rows("crossings", inputs, {"value": read_array(row, value)})
     status = np.where(
         rows.bad, CrossingStatus.BAD_INPUT, _status(*(rows.each(rows.numbers[n]) for n in LENGTHS))
@@ -88,20 +94,35 @@ def crossings(name: str, *, value: Any = 0.0, branch: int = 1, **inputs: Any) ->
 
 def _status(ec: Array, AB: Array, BC: Array) -> Array:
     """Why designs have no crossings; 0 for those that may."""
-    margin = margin_of(ec, AB, BC)
+    return _status_of(margin_of(ec, AB, BC))
+
+
+def _status_of(margin: Array) -> Array:
     codes = CrossingStatus.CANNOT_TURN, CrossingStatus.CHANGE_POINT
     return np.select([margin < 0.0, margin == 0.0], codes, 0).astype(np.int8)
 
 
-def _of_one(cycle: Cycle, name: str, level: float) -> tuple[Crossings, int]:
-    """The crossings of one design, and its status."""
+def _of_shaft(name: str, value: Any, turn: Turn) -> Answer:
+    """The crossings of a sum over the sliders of a crankshaft."""
+    level = read(Input("value", unit_of(name), ""), value, "crossings")
+    found, status = NONE, int(_status_of(np.array(turn.margin)))
+    if not status:
+        try:
+            found, status = _of_one(turn, name, level, turn.floor(name))
+        except NoCycleError:
+            status = int(CrossingStatus.NO_VALUE)
+    return _answer(name, [found], np.array([status], np.int8), (), turn)
+
+
+def _of_one(cycle: Cycle, name: str, level: float, floor: float = 0.0) -> tuple[Crossings, int]:
+    """The crossings of one design, and its status; floor: the magnitude up to which values are rounding."""
     panels = cycle.panels([name])
-    edges, values = panels.edges[0], panels.values[name][0]
+    edges, values = panels.edges.ravel(), panels.values[name].reshape(-1, NODES)
     if not np.isfinite(values).all():
         return NONE, CrossingStatus.NO_VALUE
     height = values - level
     largest = np.abs(values).max()
-    if np.abs(height).max() <= EQUAL * max(largest, abs(level)):
+    if np.abs(height).max() <= max(EQUAL * max(largest, abs(level)), floor):
         return NONE._replace(share=0.0), CrossingStatus.EQUAL
     one = Panels(edges, {name: height})
     sampled = one.samples(height)
@@ -139,7 +160,7 @@ def _polished(cycle: Cycle, name: str, theta: Array, level: float) -> Array:
     along = sensitivity(name, "theta")
     if not theta.size or not _has_slope(cycle, along):
         return theta
-    here = Cycle.values(cycle, [name, along], theta, np.zeros(theta.shape, int))
+    here = cycle.values([name, along], theta, np.zeros(theta.shape, int))
     with np.errstate(all="ignore"):
         step = (here[name] - level) / here[along]
     return np.asarray(np.where(np.abs(step) < LARGEST, theta - step, theta))
@@ -148,7 +169,9 @@ def _polished(cycle: Cycle, name: str, theta: Array, level: float) -> Array:
 def _has_slope(cycle: Cycle, along: str) -> bool:
     """True if the slope by theta is derived, and that of each load is known."""
     loads = cycle.loads.values()
-    return has(along, "omega" in cycle.numbers) and all(load.has_slope for load in loads)
+    return isinstance(cycle, Turn) or (
+        has(along, "omega" in cycle.numbers) and all(load.has_slope for load in loads)
+    )
 
 
 def _answer(
@@ -172,13 +195,12 @@ def _answer(
 
 def _gradient(cycle: Cycle, name: str, theta: Array, side: Array) -> dict[str, Array]:
     """The derivatives of angles by each input: -q_p / q_theta, at jumps those of the jump."""
-    state = "omega" in cycle.numbers
-    slopes = {p: sensitivity(name, p) for p in cycle.numbers if has(sensitivity(name, p), state)}
+    slopes = cycle.slopes_of(name)
     along = sensitivity(name, "theta")
     row, k = np.nonzero(np.isfinite(theta))
     if not row.size or not _has_slope(cycle, along):
         return {p: np.full(theta.shape, np.nan) for p in slopes}
-    here = Cycle.values(cycle, [along, *slopes.values()], theta[row, k], row)
+    here = cycle.values([along, *slopes.values()], theta[row, k], row)
     moves = cycle.moves([name], theta) if np.any(side[row, k]) else {}
     gradient = {}
     for p, slope in slopes.items():

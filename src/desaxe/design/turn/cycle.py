@@ -219,6 +219,11 @@ class Cycle:
             edges = np.concatenate([edges, sides.roots(sides.values["N_C"])], axis=1)
         return edges
 
+    def slopes_of(self, name: str) -> dict[str, str]:
+        """The derivatives of a quantity by the inputs that are numbers."""
+        state = "omega" in self.numbers
+        return {p: by for p in self.numbers if has(by := sensitivity(name, p), state)}
+
     def panels(
         self, names: Sequence[str], edges: Array | None = None, widest: float = WIDEST, **other: Any
     ) -> Panels:
