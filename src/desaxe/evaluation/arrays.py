@@ -91,7 +91,9 @@ def evaluate_arrays(
         loops = loops_over(arrays, shape)
         loops = loops if loads is None else loops.taken_by(wanted)
         fill(wanted, scalars, loops, list(buffers.values()), threads, keys=keys)
-    return copied_back(places, buffers, out is None)
+    if out is None:
+        return places if shape else {name: place[()] for name, place in places.items()}
+    return copied_back(places, buffers)
 
 
 def _functions(loads: "LoadInputs", given: Mapping[str, Any]) -> dict[str, Any]:
@@ -201,12 +203,12 @@ def _buffer_for(name: str, place: Array, others: Iterable[Array]) -> Array:
     return place if direct and not overlaps else np.empty(place.shape, dtype_of(name))
 
 
-def copied_back(places: Mapping[str, Array], buffers: Mapping[str, Array], fresh: bool) -> dict[str, Array]:
-    """The filled outputs; a new 0-d output becomes a NumPy scalar, as from a ufunc."""
+def copied_back(places: dict[str, Array], buffers: Mapping[str, Array]) -> dict[str, Array]:
+    """The outputs, filled from the buffers."""
     for name, place in places.items():
         if buffers[name] is not place:
             np.copyto(place, buffers[name], casting="same_kind")
-    return {name: place[()] if fresh and not place.ndim else place for name, place in places.items()}
+    return places
 
 
 def fill(

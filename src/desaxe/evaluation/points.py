@@ -206,7 +206,7 @@ class Points(Step):
         buffers = places if out is None else scratch_for(places, values.values())
         if all(shape):
             self._fill(values, list(buffers.values()), threads)
-        return copied_back(places, buffers, False)
+        return copied_back(places, buffers)
 
     def at(self, points: Mapping[str, Array]) -> dict[str, Array]:
         """The values under loads at points, whose inputs are columns of one length."""

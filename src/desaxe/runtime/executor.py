@@ -68,6 +68,10 @@ class CompiledKernel:
         self._pack_data = struct.Struct(f"{HEAD}q{len(self.scalars)}d").pack
         self._tables = [table.along for table in kernel.tables for _ in table.kernel.outputs]
         self.given = kernel.given
+        arrays = len(self.arguments) + len(kernel.outputs)
+        self._pack_steps = struct.Struct(f"{arrays}q").pack
+        self._pack_arrays = struct.Struct(f"{arrays + len(self._tables) + 2 * len(self.given)}q").pack
+        self._pack_lengths = struct.Struct(f"{kernel.axes + len(self.given)}q").pack
 
     def data(self, values: Mapping[str, Any], repair: int = 0, clear: int = 0) -> bytes:
         """The packed numbers of a call; `repair` and `clear` are addresses of functions (see `HEAD`)."""
@@ -84,7 +88,8 @@ class CompiledKernel:
         for table in self.given:
             arrays += [values[f"{table}_x"], values[f"{table}_c"]]
             lengths.append(values[f"{table}_x"].size)
-        return self.call(words(_addresses(arrays)), words(lengths), words(steps), self.data(values))
+        packed = self._pack_arrays(*_addresses(arrays)), self._pack_lengths(*lengths)
+        return self.call(*packed, self._pack_steps(*steps), self.data(values))
 
 
 def _addresses(arrays: Sequence[Any]) -> list[int]:
@@ -93,11 +98,6 @@ def _addresses(arrays: Sequence[Any]) -> list[int]:
         return [addressof(_bytes_of(array)) for array in arrays]
     except (TypeError, ValueError, BufferError):
         return [array.__array_interface__["data"][0] for array in arrays]
-
-
-def words(numbers: Sequence[int]) -> bytes:
-    """Whole numbers, packed."""
-    return struct.pack(f"{len(numbers)}q", *numbers)
 
 
 _LOCK = ForkSafeLock()

@@ -50,7 +50,7 @@ def key_of(
     """The key of a request whose scalars and columns are known; `keys` are those of the request so far."""
     theta = scalars.get("theta", 0.0)
     check_angle(wanted.accuracy, theta)
-    zeros = tuple([name for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0])
+    zeros = tuple([n for n, x in scalars.items() if type(x) is float and x == 0.0 and n in STRUCTURAL_ZEROS])
     kind = (
         tuple(axis_of.items()),
         axes,
