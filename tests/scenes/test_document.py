@@ -127,15 +127,14 @@ def test_equal_peaks_and_slopes_of_either_sign(tmp_path):
     assert " ".join(page.words).count("+-: at ec = 0 the peak is at theta and at -theta") == 2
 
 
-def test_what_stays_in_the_frame_is_named_beside_derivatives_by_lengths(tmp_path):
+def test_what_stays_in_the_frame_is_named_beside_derivatives_by_lengths():
+    peaks = [{"quantity": name} for name in ("T_in", "N_C", "a_C")]
     for load, named in (
         (PRESS.over_Y([200, 250], [0, -50]), 2),
         (PRESS.over_stroke([0, 9], [-50, 0], dead_centre="outer"), 0),
     ):
-        page = PRESS.replace(F_Y=load).report(
-            tmp_path / "a.md", ["T_in", "N_C", "a_C"], theta=FEW, overwrite=True
-        )
-        assert page.read_text().count("over Y stays where it is") == named
+        report = str(PRESS.replace(F_Y=load).scene((), peak=peaks, theta=FEW).run())
+        assert report.count("over Y stays where it is") == named
 
 
 def test_drive_and_origin(page):
@@ -154,10 +153,6 @@ OWN["quantities"] = {"pv": {"expression": "abs(N_C*V_C)/A", "unit": "W/m2", "con
 MADE = {
     "step": LOADED,
     "over Y": PRESS.replace(F_Y=PRESS.over_Y([150, 250], [-10, 0], [0, 2]), branch=-1),
-    "stroke": PRESS.replace(F_Y=PRESS.over_stroke([0, 9], [-50, 0], dead_centre="outer"), mu=0.1),
-    "two turns": dx.Machine(
-        ec=0.0, AB=0.05, BC=0.2, omega0=-30.0, F_Y=dx.over_theta([0, 9], [-9, 0], "step", 4 * np.pi)
-    ),
     "user-defined": dx.Machine(OWN),
 }
 

@@ -11,9 +11,9 @@ from ..mechanism.names import LOADS
 from ..mechanism.own import used_by, using
 from ..mechanism.slips import warn_of_slips
 from ..scenes.document.page import Page, checked, require_document, write_page
-from ..scenes.scene import compute
+from ..scenes.scene import compute, steps_of
 from ..support.files import as_path
-from ..support.progress import Steps
+from ..support.progress import progress_bar
 from .scenes import data_of, with_inputs
 
 MOTION, FORCES, STANDING = ("Y", "V_C", "a_C"), ("T_in", "N_C"), ("Y", "phi")
@@ -28,18 +28,21 @@ def write_report(
     page = Page(as_path("path", path), "", **options)
     require_document(page.path, page.overwrite)
     names = _usual(machine) if outputs is None else outputs
-    with warnings.catch_warnings(record=True) as heard:
+    with progress_bar() as watch, warnings.catch_warnings(record=True) as heard:
         warnings.simplefilter("always")
         warn_of_slips(machine.in_units(), machine.units)
         scene = machine.scene(names, **more)
         content, units = scene.content, scene.shown_in
         page = checked(page, content, units)
         with using(content.definitions):
-            run = compute(content, Steps(0, None), page.overwrite)
-    messages = tuple(str(one.message) for one in heard if one.category.__module__.startswith("desaxe."))
-    with using(content.definitions):
-        command = _command(machine, page.path, names, options, more)
-        return write_page(page._replace(command=command, warnings=messages), content, run, units)
+            steps = steps_of(content, watch)  # which a terminal shows after a second
+            steps.total += 1
+            run = compute(content, steps, page.overwrite)
+            own = [one for one in heard if one.category.__module__.startswith("desaxe.")]
+            command = _command(machine, page.path, names, options, more)
+            page = page._replace(command=command, warnings=tuple(str(one.message) for one in own))
+            steps.next(f"writing {page.path.name}")
+            return write_page(page, content, run, units)
 
 
 def _usual(machine: Mapping[str, Any]) -> tuple[str, ...]:
