@@ -232,6 +232,16 @@ def test_arrays_are_the_designs_one_by_one():
                 assert many["gradient"][key][name][i, j] == pytest.approx(slope, rel=1e-7, abs=scale)
 
 
+def test_the_way_of_turning_may_be_an_array():
+    """A torque that has no way of its own, over a plane of designs: each turns as its speed says."""
+    call = {"torque": lambda omega: 60.0 * np.sign(omega) - 2.0 * omega, **PRESS, "I_crank": [2.0, 3.0]}
+    found = dx.steady(omega0=[[1.0], [-1.0]], **call)
+    assert np.sign(found["omega_mean"]).tolist() == [[1.0, 1.0], [-1.0, -1.0]]
+    assert found["omega_mean"][1, 0] == pytest.approx(
+        dx.steady(omega0=-1.0, **{**call, "I_crank": 2.0})["omega_mean"]
+    )
+
+
 def test_bad_designs_of_an_array_leave_the_others_alone():
     found = dx.steady(torque=MOTOR, **{**PRESS, "AB": [0.05, np.nan, 0.3]})
     assert found["status"].tolist() == [0, 4, 1]

@@ -97,18 +97,15 @@ def steady(
         raise ValueError("alpha: steady finds the speed over a turn itself; leave it out")
     rows = input_rows("steady", given, more, LENGTHS if turn is None else ())
     speeds = [rows.numbers.pop(name) for name in ("omega", "omega0") if name in rows.numbers]
-    way = (
-        np.where(np.asarray(speeds[0] if speeds else 1.0) < 0.0, -1.0, 1.0)
-        if source.way is None
-        else source.way
-    )
+    way = np.where(rows.each(speeds[0] if speeds else 1.0) < 0.0, -1.0, 1.0)
+    if source.way is not None:
+        way = np.broadcast_to(source.way, rows.shape).reshape(-1)
     turning = {**rows.loads, **({} if source.load is None else {"torque": source.load})}
     turns = lcm(turns_of("steady", turning, MOST_TURNS), 1 if turn is None else turn.turns)
     motor = {name: rows.more[name] for name in source.numbers}
     designs = DesignRows(
         rows.size, rows.numbers, rows.loads, int(branch), source, motor,
-        rows.each(rows.more["flywheel_inertia"]), rows.each(np.broadcast_to(way, rows.shape).reshape(-1)),
-        turns, turn,
+        rows.each(rows.more["flywheel_inertia"]), way, turns, turn,
     )  # fmt: skip
     good, parts = np.flatnonzero(~rows.bad), []
     for first in range(0, max(len(good), 1), CHUNK):
