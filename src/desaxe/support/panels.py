@@ -23,6 +23,8 @@ TO_COEFFICIENTS = np.linalg.inv(legendre.legvander(NODE, NODES - 1))
 ENDS = legendre.legvander(np.array([-1.0, 1.0]), NODES - 1) @ TO_COEFFICIENTS
 # Integral from the left end of a panel to each node, of values at the nodes.
 RUNNING = legendre.legvander(NODE, NODES) @ legendre.legint(TO_COEFFICIENTS, lbnd=-1.0, axis=0)
+# Derivative over half a panel, at the nodes.
+SLOPE = legendre.legvander(NODE, NODES - 2) @ legendre.legder(TO_COEFFICIENTS, axis=0)
 BARYCENTRIC = (-1.0) ** np.arange(NODES) * np.sqrt((1.0 - NODE**2) * WEIGHT)  # of Gauss's nodes
 SAMPLES = np.concatenate([[-1.0], NODE, [1.0]])  # of a panel, where signs and extremes are looked for
 RESOLVED = 1e-13  # of the largest value: what the last coefficients of a resolved function may be
@@ -33,9 +35,6 @@ WIDEST = 0.4  # rad
 SAME = 1e-14  # rad
 NARROWEST = 2.0**-44  # rad: next to a change point functions bend within the root of the margin
 TINY = 1e-200  # stands for no distance from a node
-CLIMBS = 30  # steps of Newton's method
-CLOSE = 1e-9  # of a panel: a step after which the next one is below rounding
-PEAKS = 4  # so many of the highest samples are refined
 EQUAL = 1e-13  # of the largest value: extremes that differ by less are equal
 APART = 1e-6  # rad: equal ones that are no nearer are two
 
@@ -122,26 +121,22 @@ class Panels:
 
     def extreme(self, values: Array, sign: float) -> tuple[Any, Any, Any]:
         """The largest (sign 1) or smallest (-1) value, its place, and whether that is within a panel."""
-        sampled, series = sign * self._rows(self.samples(values)), sign * self._coefficients(values)
-        row = np.arange(len(sampled))[:, None]
-        wrapped = np.concatenate([sampled[:, -1:], sampled, sampled[:, :1]], axis=1)
-        peak = (sampled >= wrapped[:, :-2]) & (sampled >= wrapped[:, 2:])
-        best = np.argsort(np.where(peak, -sampled, np.inf), axis=1, kind="stable")[:, :PEAKS]
-        shift = np.array([[0], [-1], [1]])  # the panel of a sample at an end may rise further in the next
-        panel = np.clip(best[:, None] // SAMPLES.size + shift, 0, series.shape[1] - 1).reshape(len(row), -1)
-        middle, half = self._shape(row, panel)
-        start = np.tile(self._rows(self.places)[row, best], (1, len(shift)))
-        near = np.clip((start - middle) / np.where(half > 0.0, half, 1.0), -1.0, 1.0)
-        own = series[row, panel]
-        local = np.concatenate([_climbed(own, near), near], axis=1)
-        here = _series(np.concatenate([own, own], axis=1), local)
-        k = np.argmax(here, axis=1)[:, None]
-        place = np.tile(middle, 2) + np.tile(half, 2) * local
-        within = (np.abs(local) < 1.0) & (np.arange(local.shape[1]) < near.shape[1])
-        within &= np.tile(half, 2) > 0.0
-        k = _first_of_equal(k, here, place, within)
-        found = (np.take_along_axis(part, k, 1) for part in (sign * here, place, within))
-        top, at, inside = (part.reshape(self.edges.shape[:-1])[()] for part in found)
+        places = self._rows(self.places)
+        still = self.roots(np.nan_to_num(values @ SLOPE.T)).reshape(len(places), -1)
+        place = np.concatenate([still, places], axis=1)
+        here = np.concatenate([self.at(still, values), self._rows(self.samples(values))], axis=1)
+        height = np.where(np.isnan(here), -np.inf, sign * here)
+        row, best = np.arange(len(here)), height.argmax(axis=1)
+        # Of extremes that rounding alone tells apart, such as mirror images of each other, the first counts.
+        equal = height >= height[row, best, None] - EQUAL * np.nanmax(np.abs(here), axis=1, keepdims=True)
+        equal[:, still.shape[1] :] = False
+        first = np.where(equal, place, np.inf).argmin(axis=1)
+        ahead = equal[row, first] & equal[row, best] & (place[row, best] - place[row, first] > APART)
+        best = np.where(ahead, first, best)
+        top, at = here[row, best], place[row, best]
+        inside = (self._rows(self.edges) != at[:, None]).all(axis=1)
+        shaped = (part.reshape(self.edges.shape[:-1])[()] for part in (top, at, inside))
+        top, at, inside = shaped
         return top, at, inside
 
     def split(self, places: list[float]) -> "Panels":
@@ -171,14 +166,6 @@ class Panels:
         edges = self._rows(self.edges)
         start, stop = edges[row, panel], edges[row, panel + 1]
         return 0.5 * (start + stop), 0.5 * (stop - start)
-
-
-def _first_of_equal(best: Any, values: Array, places: Array, within: Array) -> Any:
-    """The first of extremes that rounding alone tells apart, such as mirror images of each other."""
-    equal = values >= np.take_along_axis(values, best, 1) - EQUAL * np.abs(values).max(axis=1, keepdims=True)
-    first = np.argmin(np.where(equal & within, places, np.inf), axis=1)[:, None]
-    ahead = np.take_along_axis(places, best, 1) - np.take_along_axis(places, first, 1)
-    return np.where((ahead > APART) & np.take_along_axis(equal & within, first, 1), first, best)
 
 
 def nodes_of(start: Array, stop: Array) -> Array:
@@ -220,25 +207,6 @@ def _shares(x: Array) -> Array:
         np.divide(weight, share, out=share)
     found /= found.sum(0)
     return found
-
-
-def _climbed(coefficients: Array, x: Array) -> Array:
-    """The places where the slope vanishes, by Newton's method within the panel."""
-    shape, x = x.shape, x.reshape(-1)
-    coefficients = coefficients.reshape(len(x), -1)
-    left = np.arange(len(x))
-    first = legendre.legder(coefficients, axis=-1)
-    second = legendre.legder(first, axis=-1)
-    for _ in range(CLIMBS):
-        slope, bend = _series(first[left], x[left]), _series(second[left], x[left])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            step = np.where(bend < 0.0, -slope / bend, 0.02 * np.sign(slope))
-        before = x[left]
-        x[left] = np.clip(before + np.clip(np.nan_to_num(step), -0.2, 0.2), -1.0, 1.0)
-        left = left[np.abs(x[left] - before) > CLOSE]
-        if not len(left):
-            break
-    return x.reshape(shape)
 
 
 def resolved(
