@@ -69,7 +69,7 @@ def settled(name: str, load: Any, units: UnitSystem) -> Any:
         return replace(load, terms=tuple((f, settled(name, part, units)) for f, part in load.terms))
     other = plain_units(name, load, units).values()
     if other:
-        call = getattr(load, "call", f"over_{load.over}")
+        call = getattr(load, "call", "") or f"over_{load.over}"
         texts = ", ".join(f'"... {unit}"' for unit in other)
         raise ValueError(
             f"{name}: plain numbers of desaxe.{call} are in SI units, but those given here are in "
