@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from time import perf_counter
 
-from desaxe.compiler.cost import cost_of
 from desaxe.compiler.languages.numba.library import emit_folder
 from desaxe.compiler.passes.pipeline import PASSES, optimise_in_steps
 from desaxe.compiler.passes.slicing import keep_outputs
@@ -21,14 +20,14 @@ CONCENTRIC = {"branch": 1.0, "ec": 0.0, "alpha": 0.0}
 
 def report(derivation: Derivation) -> str:
     """The modules; operations of each quantity after each pass, in general and for a concentric crank."""
-    whole, frozen = cost_of(derivation.program).operations, cost_of(derivation.frozen).operations
+    whole, frozen = len(derivation.program.lines), len(derivation.frozen.lines)
     parts = [f"as frozen {frozen} operations; same values merged {whole}, for {len(derivation.names)} names"]
     titles = ["module", "seconds", "lines", "results", "operations", "with wide margins"]
     parts.append("\nmodules:\n" + _table(titles, [_module(derivation, group) for group in GROUPS]))
     for title, fixed in (("branch = 1", GENERAL), ("branch = 1, ec = 0, alpha = 0", CONCENTRIC)):
         rows = [_row(derivation, name, fixed) for name in QUANTITIES]
-        steps = ["sliced", *(step.name for step in PASSES)]
-        titles = ["quantity", *steps, "depth", "sin, cos written out", "with its sensitivities"]
+        steps = ["sliced", *PASSES]
+        titles = ["quantity", *steps, "sin, cos written out", "with its sensitivities"]
         parts.append(f"\noperations with {title}:\n" + _table(titles, rows))
     return "\n".join(parts)
 
@@ -39,7 +38,7 @@ def _module(derivation: Derivation, group: Group) -> list[object]:
     text = emit_folder({group.name: (module, docstring)}, "", derivation.trigonometry)[group.name]
     seconds = f"{perf_counter() - start:.2f}"
     programs = module.forms.stable, module.forms.plain or module.forms.stable
-    sizes = [cost_of(program).operations for program in programs]
+    sizes = [len(program.lines) for program in programs]
     return [group.name, seconds, len(text.splitlines()), len(group.outputs), *sizes]
 
 
@@ -48,8 +47,7 @@ def _row(derivation: Derivation, name: str, fixed: Mapping[str, float]) -> list[
     family = tuple(n for n in derivation.names if n == name or n.startswith(f"{name}_wrt_"))
     wide, _ = optimise_in_steps(keep_outputs(derivation.program, family), fixed)
     written_out = expand_trigonometry(program, derivation.trigonometry)
-    counts = [step.cost.operations for step in steps]
-    return [name, *counts, cost_of(program).depth, len(written_out.lines), len(wide.lines)]
+    return [name, *(count for _, count in steps), len(written_out.lines), len(wide.lines)]
 
 
 def _table(titles: list[str], rows: list[list[object]]) -> str:

@@ -16,7 +16,6 @@ import sympy
 
 from desaxe import compiler
 from desaxe.compiler.builder import module_text, with_sources
-from desaxe.compiler.cost import cost_of
 from desaxe.compiler.languages.numba.library import HELPER_FILE, emit_folder
 from desaxe.compiler.languages.protocol import Forms, Module, Symbol
 from desaxe.compiler.passes.bind import assume
@@ -149,9 +148,7 @@ _require_one_set()
 
 def _program(program: Program, name: str, what: str, digest: str) -> str:
     text = write_function(program, name, what.partition("\n")[0])
-    return module_text(
-        _banner(what, digest, f"{cost_of(program).operations} operations"), with_sources([text])
-    )
+    return module_text(_banner(what, digest, f"{len(program.lines)} operations"), with_sources([text]))
 
 
 def _index(derivation: Derivation, digest: str) -> str:
@@ -210,8 +207,8 @@ def module_of(derivation: Derivation, group: Group, digest: str) -> tuple[Module
 def _head(group: Group, module: Module, digest: str) -> str:
     """The docstring of a module of kernels."""
     plain = module.forms.plain
-    size = f"{cost_of(module.forms.stable).operations} operations"
-    size += f", {cost_of(plain).operations} where margins are wide" if plain else ""
+    size = f"{len(module.forms.stable.lines)} operations"
+    size += f", {len(plain.lines)} where margins are wide" if plain else ""
     rows = [f"    {s.name:10} {f'[{s.unit}] ' if s.unit != '1' else ''}{s.meaning}" for s in module.inputs]
     branch = "    branch     +1 or -1: the assembly"
     what = f"{group.what[0].upper()}{group.what[1:]}."

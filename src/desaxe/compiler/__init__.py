@@ -6,7 +6,6 @@
     helpers     functions that spellings call, in plain Python
     builder     modules as text: parts, what they call from real files, imports
     interpret   a Program run exactly (mpmath) or in IEEE doubles
-    cost        operations, depth, throughput
     passes      Program -> Program, one module each
     lowering    the stages from a Program to machine code, in their order: read this first
     kernel      a loop nest whose bodies are Programs

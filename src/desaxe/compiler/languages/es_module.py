@@ -1,13 +1,10 @@
 """A JavaScript module (ES2015) and its types: `import { evaluate, a_C } from "./name.js"`."""
 
 from ...support.template import file_text, filled
-from ..text import with_short_temporaries
-from .javascript import HEADER, TABLES, emit_javascript
+from .javascript import HEADER, SPELLING, TABLES, emit_javascript
 from .protocol import Language, Module, Symbol
-from .shared import arrays_of, comment, numbers, one_line, safe_name, with_safe_names
-from .words import words_of
+from .shared import arrays_of, comment, numbers, one_line
 
-WORDS = words_of("javascript").lines
 EVALUATE = file_text(__package__, "es_module.js")
 TYPES = file_text(__package__, "es_module.d.ts")
 
@@ -27,8 +24,6 @@ class JavaScript(Language):
 def _source(module: Module) -> str:
     program = module.forms.stable
     program = program._replace(inputs=tuple(symbol.name for symbol in module.inputs))
-    # An output may be an input, or stand twice: it is returned as it is called here.
-    program = with_safe_names(with_short_temporaries(program), WORDS)
     program = program._replace(outputs=program.outputs[: len(module.outputs)])
     symbols = {symbol.name: symbol for symbol in (*module.inputs, *module.outputs)}
     units = (f'{name}: "{symbol.unit}"' for name, symbol in symbols.items())
@@ -58,7 +53,7 @@ def _function(module: Module, symbol: Symbol, place: int) -> str:
     """The function of one output; an argument that it does not take is NaN."""
     taken = module.taken(symbol.name)
     names = [one.name for one in module.inputs]
-    checked = [f'number("{n}", {safe_name(n, WORDS)})' if n in taken else "NaN" for n in names]
+    checked = [f'number("{n}", {SPELLING.safe(n)})' if n in taken else "NaN" for n in names]
     head = f"{_about(symbol)}\nexport function {_signature(module, symbol, '')} {{"
     return f"{head}\n  return values({', '.join(checked)})[{place}];\n}}\n"
 
@@ -78,7 +73,7 @@ def _types(module: Module) -> str:
 
 
 def _signature(module: Module, symbol: Symbol, kind: str) -> str:
-    parameters = (f"{safe_name(name, WORDS)}{kind}" for name in module.taken(symbol.name))
+    parameters = (f"{SPELLING.safe(name)}{kind}" for name in module.taken(symbol.name))
     return f"{symbol.name}({', '.join(parameters)})"
 
 

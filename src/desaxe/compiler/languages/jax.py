@@ -11,21 +11,19 @@ from ...support.template import file_text
 from ..builder import HELPERS as SHARED
 from ..builder import functions_of
 from ..program import Program
-from ..text import INDENT, with_short_temporaries
+from ..text import INDENT
 from .protocol import Language, Module, Symbol
 from .shared import (
+    Spelling,
     arrays_of,
     called,
     documented,
     functions_in,
     numbers,
     one_line,
-    statements,
     types_of,
     with_helpers,
-    with_safe_names,
 )
-from .words import words_of
 
 NUMPY = (
     "copysign", "cos", "exp", "floor", "hypot", "inf", "log", "logical_and", "logical_not", "logical_or",
@@ -33,7 +31,7 @@ NUMPY = (
 )  # fmt: skip
 RENAMED = {"atan2": "arctan2", "fabs": "abs", "pow": "power"}  # readable text -> jax.numpy
 OWN = ("asarray", "custom_jvp", "finfo", "float32", "result_type", "stop_gradient", "zeros_like", "int8")
-WORDS = {"nan": "nan", "inf": "inf", "True": "True", "False": "False"}
+SPELLING = Spelling("jax", "{name} = {right}", "  # {}")
 HELPERS = {
     "two_sum_error": functions_of(SHARED)["two_sum_error"] + "\n",
     **functions_in(file_text(__package__, "jax_helpers.txt")),
@@ -106,17 +104,11 @@ def _words(code: str) -> set[str]:
 
 def _function(name: str, program: Program, inputs: list[str]) -> str:
     """`_name(*inputs)`: the values, without derivatives."""
-    program = with_safe_names(with_short_temporaries(program), words_of("jax").lines)
+    result = SPELLING.safe(program.outputs[0])
     whole = types_of(program).get(program.outputs[0]) == "i64"
-    rows = [
-        f"{line} = {right}" + (f"  # {note}" if note else "")
-        for line, right, note in statements(program, "jax", WORDS)
-    ]
-    result = program.outputs[0]
     returned = f"asarray(stop_gradient({result}), int8)" if whole else f"asarray({result})"
-    return "\n".join(
-        [f"def _{name}({', '.join(inputs)}):", *(INDENT + row for row in [*rows, f"return {returned}"]), ""]
-    )
+    rows = [*SPELLING.statements(program), f"return {returned}"]
+    return "\n".join([f"def _{name}({', '.join(inputs)}):", *(INDENT + row for row in rows), ""])
 
 
 def _public(symbol: Symbol, inputs: list[str], taken: list[str]) -> str:

@@ -9,20 +9,21 @@ from ..program import Program
 from ..text import with_short_temporaries
 from .protocol import Language, Module
 from .shared import (
+    Spelling,
     arrays_of,
     described,
     functions_in,
     numbers,
     one_line,
-    safe_name,
-    statements,
     with_helpers,
-    with_safe_names,
 )
-from .words import words_of
 
-WORDS = {"nan": "NaN", "inf": "Inf", "True": "true", "False": "false"}
-RESERVED = words_of("octave").lines
+SPELLING = Spelling(
+    "octave",
+    "{name} = {right};",
+    "  % {}",
+    {"nan": "NaN", "inf": "Inf", "True": "true", "False": "false"},
+)
 HELPERS = functions_in(file_text(__package__, "octave.m"))
 
 
@@ -39,12 +40,12 @@ class Octave(Language):
 
 
 def _text(module: Module) -> str:
-    inputs = [safe_name(symbol.name, RESERVED) for symbol in module.inputs]
+    inputs = [SPELLING.safe(symbol.name) for symbol in module.inputs]
     program = with_short_temporaries(module.forms.stable)
     program = program._replace(outputs=program.outputs[: len(module.outputs)])
     outputs = [symbol.name for symbol in module.outputs]
     head = f"function [{', '.join(f'out_{name}' for name in outputs)}] = {module.name}({', '.join(inputs)})"
-    rows = [*_help(module), *_same_shape(inputs), *_content(module), *_body(program)]
+    rows = [*_help(module), *_same_shape(inputs), *_content(module), *SPELLING.statements(program)]
     body = [f"  {row}" for row in [*rows, *_results(program, outputs)]]
     main = "\n".join([head, *body, "end", ""])
     return "\n".join([main, *with_helpers(main, HELPERS)])
@@ -80,16 +81,8 @@ def _same_shape(inputs: list[str]) -> list[str]:
     return [f"shape = {shape};", *(f"{name} = numbers('{name}', {name}) .* shape;" for name in inputs)]
 
 
-def _body(program: Program) -> list[str]:
-    program = with_safe_names(program, RESERVED)
-    return [
-        f"{name} = {right};" + (f"  % {note}" if note else "")
-        for name, right, note in statements(program, "octave", WORDS)
-    ]
-
-
 def _results(program: Program, outputs: list[str]) -> list[str]:
     return [
-        f"out_{name} = double({safe_name(own, RESERVED)}) .* shape;"
+        f"out_{name} = double({SPELLING.safe(own)}) .* shape;"
         for name, own in zip(outputs, program.outputs, strict=True)
     ]

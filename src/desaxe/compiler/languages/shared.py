@@ -5,23 +5,47 @@ import builtins
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from textwrap import wrap
+from typing import NamedTuple
 
 from ..operations import Content
 from ..program import Program, renamed
 from ..text import with_short_temporaries, write_lines
 from .protocol import Module, Symbol
+from .words import words_of
 
 _WORD = re.compile(r"\b(nan|inf|True|False)\b")
 
 
-def statements(program: Program, column: str, words: Mapping[str, str]) -> list[tuple[str, str, str]]:
-    """Name, right-hand side and note of each assignment; `words` spells nan, inf, True and False."""
-    found = []
-    for line in write_lines(with_short_temporaries(program), column):
-        assignment, _, note = line.partition("  # ")
-        name, _, right = assignment.partition(" = ")
-        found.append((name, _WORD.sub(lambda match: words[match[1]], right), note))
-    return found
+class Spelling(NamedTuple):
+    """How a language writes an assignment, what follows it as a comment, and the words of constants."""
+
+    column: str  # of the operation table
+    statement: str
+    note: str
+    words: Mapping[str, str] = {}
+    kinds: tuple[str, str] = ("", "")  # of a double, and of any other value
+
+    @property
+    def reserved(self) -> frozenset[str]:
+        """Words that no name can be; it gets an underscore."""
+        return words_of(self.column).lines
+
+    def safe(self, name: str) -> str:
+        """A name that the language has not for itself."""
+        return safe_name(name, self.reserved)
+
+    def statements(self, program: Program) -> list[str]:
+        """The assignments of a program as statements, under safe names."""
+        program = with_safe_names(with_short_temporaries(program), self.reserved)
+        types, rows = types_of(program), []
+        for line in write_lines(program, self.column):
+            assignment, _, note = line.partition("  # ")
+            name, _, right = assignment.partition(" = ")
+            right = _WORD.sub(lambda match: self.words.get(match[1], match[1]), right)
+            kind = self.kinds[types[name] != "f64"]
+            comment = self.note.format(one_line(note)) if note else ""
+            rows.append(self.statement.format(kind=kind, name=name, right=right) + comment)
+        return rows
 
 
 def safe_name(name: str, reserved: Collection[str]) -> str:

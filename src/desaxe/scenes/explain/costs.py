@@ -6,7 +6,6 @@ from itertools import pairwise
 from math import prod
 from typing import Any, NamedTuple
 
-from ...compiler.cost import cost_of
 from ...compiler.kernel import Kernel
 from ...compiler.passes.double_double import double_double
 from ...compiler.passes.pipeline import optimise_in_steps
@@ -68,10 +67,10 @@ def steps_of(key: KernelKey, request: Request, inside: int) -> Iterator[dict[str
     `inside` is the number of the kernel's.
     """
     _, costs = optimise_in_steps(program_of(request.names, request.form), dict(key.fixed))
-    counts = [("derivation", len(whole_program().lines)), ("slice", costs[0].cost.operations)]
+    counts = [("derivation", len(whole_program().lines)), ("slice", costs[0][1])]
     names = {"slice": "unused"}
-    counts += [(names.get(step.name, step.name), step.cost.operations) for step in costs[1:]]
-    kept = cost_of(specialise(request.names, request.form, key.fixed)).operations
+    counts += [(names.get(name, name), operations) for name, operations in costs[1:]]
+    kept = len(specialise(request.names, request.form, key.fixed).lines)
     counts.append(("keep", kept))
     if key.form.wide_margins:
         counts.append(("plain", _operations(key, key.fixed)))
@@ -105,7 +104,7 @@ def skipped_of(key: KernelKey, request: Request, given: Mapping[str, Any]) -> It
 
 
 def _operations(key: KernelKey, fixed: tuple[tuple[str, float], ...]) -> int:
-    return cost_of(specialise(key.names, key.form, fixed)).operations
+    return len(specialise(key.names, key.form, fixed).lines)
 
 
 def loops_of(of: Points, sizes: Mapping[str, int]) -> list[LoopCost]:

@@ -8,14 +8,17 @@ import re
 from collections.abc import Iterable, Mapping
 
 from ...program import Program
-from ...text import with_short_temporaries
 from ..lifted import lifted
-from ..shared import one_line, safe_name, statements, types_of, with_safe_names
-from ..words import words_of
+from ..shared import Spelling, types_of, with_safe_names
 
 # NAN and INFINITY are floats: a cast says that they are meant as doubles.
-WORDS = {"nan": "(double)NAN", "inf": "(double)INFINITY", "True": "1", "False": "0"}
-RESERVED = words_of("c").lines
+SPELLING = Spelling(
+    "c",
+    "const {kind} {name} = {right};",
+    " /* {} */",
+    {"nan": "(double)NAN", "inf": "(double)INFINITY", "True": "1", "False": "0"},
+    ("double", "int"),
+)
 
 
 def static_function(
@@ -30,14 +33,14 @@ def static_function(
 
     Without a status nothing is returned.
     """
-    program = with_safe_names(program, RESERVED)
-    arguments = [safe_name(argument, RESERVED) for argument in arguments]
+    program = with_safe_names(program, SPELLING.reserved)
+    arguments = [SPELLING.safe(argument) for argument in arguments]
     filled = program.outputs[:results]
     out = ["double out[]"] if filled else []
     parameters = ", ".join([*(f"double {a}" for a in arguments), *out])
     used = {a for line in program.lines for a in line.args if isinstance(a, str)} | set(program.outputs)
     lines = [f"(void){a};" for a in arguments if a not in used]
-    lines += _body(program)
+    lines += SPELLING.statements(program)
     types = types_of(program)
     cast = {name: "(double)" * (types[name] != "f64") for name in filled}  # a status
     lines += [f"out[{index}] = {cast[output]}{output};" for index, output in enumerate(filled)]
@@ -67,13 +70,3 @@ def called_through(
     rows = [*(f"(void){one};" for one in unused), *body]
     through = "\n".join([f"{head} {{", *(f"  {row}" for row in rows), "}"]) + "\n"
     return [static_function(name, form.program, form.program.inputs, results, status), through]
-
-
-def _body(program: Program) -> list[str]:
-    program = with_short_temporaries(program)
-    types = types_of(program)
-    rows = []
-    for name, right, note in statements(program, "c", WORDS):
-        kind = "double" if types.get(name, "f64") == "f64" else "int"
-        rows.append(f"const {kind} {name} = {right};" + (f" /* {one_line(note)} */" if note else ""))
-    return rows
