@@ -139,7 +139,7 @@ def _define_constant(sheet: Sheet, name: str, base: str, value: sp.Expr) -> None
         raise ValueError(f"{base} has no unit")
     by = parts(name)[1]
     what = f"derivative of {base} by {', '.join(by)}" if value else f"0: {base} does not depend on it"
-    sheet.define(name, value, unit=per(unit, *by), meaning=what)
+    sheet.define(name, value, per(unit, *by), what)
 
 
 def _finished(program: Program) -> Program:

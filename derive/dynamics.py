@@ -74,9 +74,9 @@ def centres_sheet() -> Sheet:
     """The equations of centres of mass that are halfway along their links, and move with them."""
     sheet = Sheet(())
     for centre, length in zip(CENTRES, (AB, BC), strict=True):
-        sheet.define(centre, length / 2, unit=LENGTH, meaning=f"half of {length}")
+        sheet.define(centre, length / 2, LENGTH, f"half of {length}")
         by_length = sensitivity(centre, str(length))
-        sheet.define(by_length, sp.Rational(1, 2), unit=NONE, meaning=f"derivative of {centre} by {length}")
+        sheet.define(by_length, sp.Rational(1, 2), NONE, f"derivative of {centre} by {length}")
     return sheet
 
 
@@ -95,13 +95,12 @@ def _define_lumps(sheet: Sheet) -> None:
     """Lumped masses; a centre of mass that is an input does not move with its link's length."""
     for centre, length in zip(CENTRES, ("AB", "BC"), strict=True):
         meaning = f"derivative of {centre} by {length}"
-        sheet.define(sensitivity(centre, length), 0, unit=NONE, meaning=meaning)
+        sheet.define(sensitivity(centre, length), 0, NONE, meaning)
     _define_share(sheet, "m_crank_at_B", m_crank, r_crank, AB, "the crank's mass as if at B", "B (35)")
     _define_share(sheet, "m_at_C", m_rod, r_rod, BC, "the rod's mass at C", "B (33)")
-    sheet.define("m_at_B", m_rod * ((BC - r_rod) / BC), unit=MASS, meaning="the rod's mass at B",
-                 source="B (32)")  # fmt: skip
-    sheet.define(sensitivity("m_at_B", "BC"), -symbol(sensitivity("m_at_C", "BC")), unit=per(MASS, "BC"),
-                 meaning="derivative of m_at_B by BC")  # fmt: skip
+    sheet.define("m_at_B", m_rod * ((BC - r_rod) / BC), MASS, "the rod's mass at B", "B (32)")
+    sheet.define(sensitivity("m_at_B", "BC"), -symbol(sensitivity("m_at_C", "BC")), per(MASS, "BC"),
+                 "derivative of m_at_B by BC")  # fmt: skip
     rows = (
         ("m_rotating", m_at_B + symbol("m_crank_at_B"), MASS, "rotating mass, as if at the crank pin",
          "B (36)"),
@@ -114,33 +113,35 @@ def _define_lumps(sheet: Sheet) -> None:
         ("m_turning", m_crank + m_at_B, MASS, "mass that turns with AB", ""),
     )  # fmt: skip
     for name, expression, unit, meaning, source in rows:
-        sheet.define(name, expression, unit=unit, meaning=meaning, source=source)
+        sheet.define(name, expression, unit, meaning, source)
 
 
 def _define_share(
     sheet: Sheet, name: str, mass: sp.Symbol, centre: sp.Symbol, length: sp.Symbol, meaning: str, source: str
 ) -> None:
     """mass centre/length, whose derivative by the length is exactly 0 where the centre moves with it."""
-    sheet.define(name, mass * (centre / length), unit=MASS, meaning=meaning, source=source)
+    sheet.define(name, mass * (centre / length), MASS, meaning, source)
     moved = symbol(sensitivity(centre.name, length.name)) * length - centre
     by_length = sensitivity(name, length.name)
-    sheet.define(by_length, mass * moved / length**2, unit=per(MASS, length.name),
-                 meaning=f"derivative of {name} by {length}")  # fmt: skip
+    sheet.define(
+        by_length, mass * moved / length**2, per(MASS, length.name), f"derivative of {name} by {length}"
+    )
 
 
 def _define_loads(sheet: Sheet) -> None:
     """Inertia forces and external loads, without friction."""
-    sheet.define("crank_X", alpha * cos_theta - omega2 * sin_theta, unit=PER_TIME2,
-                 meaning="acceleration along X of a point of the crank, per distance from A")  # fmt: skip
-    sheet.define("crank_Y", -(alpha * sin_theta + omega2 * cos_theta), unit=PER_TIME2,
-                 meaning="acceleration along Y of a point of the crank, per distance from A")  # fmt: skip
-    sheet.define("thrust_smooth", m_reciprocating * (a_C - g_Y) - F_Y, unit=FORCE,
-                 meaning="force along Y on the reciprocating mass, without friction")  # fmt: skip
-    sheet.define("rod_twist", I_lumping * alpha_BC * inv_S, unit=FORCE,
-                 meaning="side force for the rod's moment of inertia")  # fmt: skip
-    sheet.define("lean", branch * tan_phi, unit=NONE, meaning="side force per thrust")
-    sheet.define("N_smooth", lean * thrust_smooth + rod_twist - m_reciprocating * g_X - F_X, unit=FORCE,
-                 meaning="normal force at the guide, without friction")  # fmt: skip
+    sheet.define("crank_X", alpha * cos_theta - omega2 * sin_theta, PER_TIME2,
+                 "acceleration along X of a point of the crank, per distance from A")  # fmt: skip
+    sheet.define("crank_Y", -(alpha * sin_theta + omega2 * cos_theta), PER_TIME2,
+                 "acceleration along Y of a point of the crank, per distance from A")  # fmt: skip
+    sheet.define("thrust_smooth", m_reciprocating * (a_C - g_Y) - F_Y, FORCE,
+                 "force along Y on the reciprocating mass, without friction")  # fmt: skip
+    sheet.define(
+        "rod_twist", I_lumping * alpha_BC * inv_S, FORCE, "side force for the rod's moment of inertia"
+    )
+    sheet.define("lean", branch * tan_phi, NONE, "side force per thrust")
+    sheet.define("N_smooth", lean * thrust_smooth + rod_twist - m_reciprocating * g_X - F_X, FORCE,
+                 "normal force at the guide, without friction")  # fmt: skip
 
 
 hypot = sp.Function("hypot")
@@ -158,28 +159,27 @@ def _sign(x: sp.Expr) -> sp.Expr:
 def _define_friction(sheet: Sheet) -> None:
     """The normal force that is consistent with the friction which it causes."""
     way = sheet.define("way", select(eq(omega, 0), alpha, omega), rigid=True)
-    sliding = sheet.define("sliding", _sign(Y_1) * _sign(way), unit=NONE, rigid=True,
-                           meaning="sigma: the slider's way of sliding, or of starting")  # fmt: skip
-    pressed = sheet.define("pressed", _sign(N_smooth), unit=NONE, rigid=True, meaning="sign of N_C")
-    wedge = sheet.define("wedge", lean * mu * sliding * pressed, unit=NONE,
-                         meaning="share of N_C that friction itself causes")  # fmt: skip
+    sliding = sheet.define("sliding", _sign(Y_1) * _sign(way), NONE,
+                           "sigma: the slider's way of sliding, or of starting", rigid=True)  # fmt: skip
+    pressed = sheet.define("pressed", _sign(N_smooth), NONE, "sign of N_C", rigid=True)
+    wedge = sheet.define(
+        "wedge", lean * mu * sliding * pressed, NONE, "share of N_C that friction itself causes"
+    )
     normal = N_smooth / (1 - wedge)
     alone = sp.Function("and")(le(-1, wedge), lt(wedge, 1))
-    sheet.define("N_C", select(alone, normal, nan), unit=FORCE, differentiate=normal, source="C (link 4)",
-                 meaning="force of the guide on the slider along X")  # fmt: skip
-    sheet.define("F_friction", -mu * sliding * pressed * N_C, unit=FORCE, source="C (matrix, mu)",
-                 meaning="friction of the guide on the slider along Y")  # fmt: skip
+    sheet.define("N_C", select(alone, normal, nan), FORCE, "force of the guide on the slider along X",
+                 "C (link 4)", differentiate=normal)  # fmt: skip
+    sheet.define("F_friction", -mu * sliding * pressed * N_C, FORCE,
+                 "friction of the guide on the slider along Y", "C (matrix, mu)")  # fmt: skip
     sheet.define("one_balance", select(alone, 0, nan), rigid=True)
     balance = select(lt(wedge, 1), select(lt(wedge, -1), 6, 0), 5)
-    sheet.define("force_status", assembled(balance), unit=NONE, meaning="status of a request for forces")
+    sheet.define("force_status", assembled(balance), NONE, "status of a request for forces")
 
 
 def _define_joints(sheet: Sheet) -> None:
     """Forces at C, B and A, each on the link that comes later on the way from the frame to the slider."""
-    sheet.define("thrust", thrust_smooth - F_friction, unit=FORCE, meaning="axial force on the lumped slider")
-    sheet.define(
-        "side_push", lean * thrust + rod_twist, unit=FORCE, meaning="force to the side on the lumped slider"
-    )
+    sheet.define("thrust", thrust_smooth - F_friction, FORCE, "axial force on the lumped slider")
+    sheet.define("side_push", lean * thrust + rod_twist, FORCE, "force to the side on the lumped slider")
     rows = (
         ("F_C_X", m_at_C * g_X - side_push, "force of the rod on the slider along X", "C (link 4)"),
         ("F_C_Y", m_slider * (a_C - g_Y) - F_Y - F_friction, "force of the rod on the slider along Y",
@@ -194,12 +194,11 @@ def _define_joints(sheet: Sheet) -> None:
          "C (link 2)"),
     )  # fmt: skip
     for name, expression, meaning, source in rows:
-        sheet.define(name, expression, unit=FORCE, meaning=meaning, source=source)
+        sheet.define(name, expression, FORCE, meaning, source)
     weight = swing * (g_X * cos_theta - g_Y * sin_theta)
     torque = I_turning * alpha + Y_1 * thrust - I_lumping * phi_1 * alpha_BC - weight
-    sheet.define("T_in", torque, unit=TORQUE, source="C (link 2)",
-                 meaning="torque that the drive applies to the crank")  # fmt: skip
-    sheet.define("power_in", T_in * omega, unit=POWER, meaning="power that the drive puts in, T_in omega")
+    sheet.define("T_in", torque, TORQUE, "torque that the drive applies to the crank", "C (link 2)")
+    sheet.define("power_in", T_in * omega, POWER, "power that the drive puts in, T_in omega")
 
 
 def _define_magnitudes(sheet: Sheet) -> None:
@@ -207,43 +206,42 @@ def _define_magnitudes(sheet: Sheet) -> None:
     joints = (("A", "frame on the crank"), ("B", "crank on the rod"), ("C", "rod on the slider"))
     for joint, bodies_of_joint in joints:
         X, Y = symbol(f"F_{joint}_X"), symbol(f"F_{joint}_Y")
-        sheet.define(f"F_{joint}", hypot(X, Y), unit=FORCE, differentiate=sp.sqrt(X**2 + Y**2),
-                     meaning=f"magnitude of the force of the {bodies_of_joint}")  # fmt: skip
-    sheet.define("P_friction", -F_friction * V_C, unit=POWER, meaning="power lost in the guide by friction")
+        sheet.define(f"F_{joint}", hypot(X, Y), FORCE, f"magnitude of the force of the {bodies_of_joint}",
+                     differentiate=sp.sqrt(X**2 + Y**2))  # fmt: skip
+    sheet.define("P_friction", -F_friction * V_C, POWER, "power lost in the guide by friction")
     # At rest the speed's derivative is infinite, but nothing rubs.
     by_alpha = (sheet.derivative(name, "alpha") for name in ("F_friction", "V_C"))
     forces, speeds = by_alpha
     rubbed = select(eq(F_friction, 0), 0, F_friction * speeds)
-    sheet.define(sensitivity("P_friction", "alpha"), -(forces * V_C + rubbed), unit=per(POWER, "alpha"),
-                 meaning="derivative of P_friction by alpha")  # fmt: skip
+    sheet.define(sensitivity("P_friction", "alpha"), -(forces * V_C + rubbed), per(POWER, "alpha"),
+                 "derivative of P_friction by alpha")  # fmt: skip
 
 
 def _define_frame(sheet: Sheet) -> None:
     """Shaking force and moment on the frame, loads less inertia forces; and those of inertia alone."""
-    m_total = sheet.define("m_total", m_turning + m_reciprocating, unit=MASS, meaning="mass of all links")
-    sheet.define("F_shaking_X", m_total * g_X + F_X - swing * crank_X, unit=FORCE,
-                 meaning="force of the mechanism on the frame along X")  # fmt: skip
-    sheet.define("F_shaking_Y", m_total * g_Y + F_Y - swing * crank_Y - m_reciprocating * a_C, unit=FORCE,
-                 source="B (46)", meaning="force of the mechanism on the frame along Y")  # fmt: skip
+    m_total = sheet.define("m_total", m_turning + m_reciprocating, MASS, "mass of all links")
+    sheet.define("F_shaking_X", m_total * g_X + F_X - swing * crank_X, FORCE,
+                 "force of the mechanism on the frame along X")  # fmt: skip
+    sheet.define("F_shaking_Y", m_total * g_Y + F_Y - swing * crank_Y - m_reciprocating * a_C, FORCE,
+                 "force of the mechanism on the frame along Y", "B (46)")  # fmt: skip
     spun = I_turning * alpha + branch * I_lumping * alpha_BC
-    sheet.define("F_inertia_X", -swing * crank_X, unit=FORCE,
-                 meaning="force of moving masses on the foundation along X")  # fmt: skip
-    sheet.define("F_inertia_Y", -swing * crank_Y - m_reciprocating * a_C, unit=FORCE,
-                 meaning="force of moving masses on the foundation along Y")  # fmt: skip
-    sheet.define("M_inertia", -ec * m_reciprocating * a_C - spun, unit=TORQUE,
-                 meaning="moment of moving masses on the foundation, about A")  # fmt: skip
+    sheet.define("F_inertia_X", -swing * crank_X, FORCE, "force of moving masses on the foundation along X")
+    sheet.define("F_inertia_Y", -swing * crank_Y - m_reciprocating * a_C, FORCE,
+                 "force of moving masses on the foundation along Y")  # fmt: skip
+    sheet.define("M_inertia", -ec * m_reciprocating * a_C - spun, TORQUE,
+                 "moment of moving masses on the foundation, about A")  # fmt: skip
     pulled = Y * (m_reciprocating * g_X + F_X) + ec * (m_reciprocating * (g_Y - a_C) + F_Y)
     weight = swing * (g_X * cos_theta - g_Y * sin_theta)
-    sheet.define("M_shaking", weight + pulled - spun, unit=TORQUE,
-                 meaning="moment of the mechanism and its drive on the frame, about A")  # fmt: skip
+    sheet.define("M_shaking", weight + pulled - spun, TORQUE,
+                 "moment of the mechanism and its drive on the frame, about A")  # fmt: skip
 
 
 def _define_energies(sheet: Sheet) -> None:
-    M_eff = sheet.define("M_eff", I_turning + m_reciprocating * Y_1**2 - I_lumping * phi_1**2, unit=INERTIA,
-                         meaning="effective moment of inertia at the crank")  # fmt: skip
-    sheet.define("kinetic_energy", M_eff * omega2 / 2, unit=ENERGY, meaning="kinetic energy of all links")
+    M_eff = sheet.define("M_eff", I_turning + m_reciprocating * Y_1**2 - I_lumping * phi_1**2, INERTIA,
+                         "effective moment of inertia at the crank")  # fmt: skip
+    sheet.define("kinetic_energy", M_eff * omega2 / 2, ENERGY, "kinetic energy of all links")
     height = swing * (g_X * sin_theta + g_Y * cos_theta) + m_reciprocating * (g_Y * Y - ec * g_X)
-    sheet.define("potential_energy", -height, unit=ENERGY, meaning="potential energy of gravity, 0 at A")
+    sheet.define("potential_energy", -height, ENERGY, "potential energy of gravity, 0 at A")
 
 
 # What is held against the solved free bodies; N_C with friction as a given force.

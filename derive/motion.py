@@ -43,32 +43,15 @@ def define_law(sheet: Sheet) -> None:
     """omega, omega^2 and their derivatives under paper A's law."""
     constant_speed = eq(alpha * theta, 0)  # NaN where theta is: it must not be lost here
     _define_square(sheet)
-    sheet.define(
-        "stalled", lt(symbol("omega2_law"), 0), unit=NONE, meaning="the crank stopped before this angle"
-    )
+    sheet.define("stalled", lt(symbol("omega2_law"), 0), NONE, "the crank stopped before this angle")
     square = select(symbol("stalled"), nan, symbol("omega2_law"))
-    sheet.define(
-        "omega2",
-        select(constant_speed, omega0**2, square),
-        unit=UNITS["omega2"],
-        meaning="square of the crank's speed, NaN where it has stalled",
-        differentiate=LAW,
-    )
-    sheet.define("turn", select(le(0, omega0), 1, -1), unit=NONE, meaning="way of turning", rigid=True)
+    sheet.define("omega2", select(constant_speed, omega0**2, square), UNITS["omega2"],
+                 "square of the crank's speed, NaN where it has stalled", differentiate=LAW)  # fmt: skip
+    sheet.define("turn", select(le(0, omega0), 1, -1), NONE, "way of turning", rigid=True)
     _define_turning(sheet, omega0)
-    sheet.define(
-        "omega",
-        select(constant_speed, omega0, turn * sp.sqrt(omega2)),
-        unit=ANGULAR_SPEED,
-        meaning="angular speed of the crank",
-        source="A listing",
-    )
-    sheet.define(
-        "inv_omega",
-        select(eq(theta, 0), 0, 1 / omega),
-        unit=Unit(0, 1, -1),
-        meaning="1 / omega, 0 at the start",
-    )
+    sheet.define("omega", select(constant_speed, omega0, turn * sp.sqrt(omega2)), ANGULAR_SPEED,
+                 "angular speed of the crank", "A listing")  # fmt: skip
+    sheet.define("inv_omega", select(eq(theta, 0), 0, 1 / omega), Unit(0, 1, -1), "1 / omega, 0 at the start")
     for parameters, value in {**_omega_rates(), **_omega_second_rates()}.items():
         _define_rate(sheet, "omega", parameters, value)
     for parameters in SQUARE_RATES:
@@ -85,22 +68,17 @@ def _define_square(sheet: Sheet) -> None:
     rounded = two_product_error(omega0, omega0) + two_product_error(2 * alpha, theta)
     total, lost = sheet.define("omega2_total", start + gained), sheet.define("omega2_lost", rounded)
     sheet.define(
-        "omega2_law",
-        total + lost,
-        unit=UNITS["omega2"],
-        meaning="omega^2 by the law",
-        source="A listing",
-        differentiate=LAW,
+        "omega2_law", total + lost, UNITS["omega2"], "omega^2 by the law", "A listing", differentiate=LAW
     )
 
 
 def _define_powers(sheet: Sheet) -> None:
     """omega^3 and omega alpha, with derivatives that keep their limits where omega is 0."""
-    sheet.define("omega3", omega * omega2, unit=Unit(0, -3, 3), meaning="omega^3")
+    sheet.define("omega3", omega * omega2, Unit(0, -3, 3), "omega^3")
     for parameter in MOVING:
         by_square = sp.Rational(3, 2) * omega * symbol(sensitivity("omega2", parameter))
         _define_rate(sheet, "omega3", (parameter,), by_square)
-    sheet.define("omega_alpha", omega * alpha, unit=Unit(0, -3, 2), meaning="omega alpha")
+    sheet.define("omega_alpha", omega * alpha, Unit(0, -3, 2), "omega alpha")
     moving = omega + alpha * symbol("omega_wrt_alpha")
     _define_rate(sheet, "omega_alpha", ("alpha",), select(eq(alpha, 0), omega, moving))
 
@@ -114,14 +92,12 @@ def define_speed_by_alpha(sheet: Sheet, name: str, by_theta: sp.Symbol) -> None:
     assert unit is not None
     per_turn = sheet.define(f"{name}_per_theta", by_theta * symbol("inv_omega"))
     meaning = f"derivative of {name} by alpha"
-    sheet.define(
-        f"{name}_wrt_alpha", per_turn * theta, unit=per(unit, "alpha"), meaning=meaning, differentiate=plain
-    )
+    sheet.define(f"{name}_wrt_alpha", per_turn * theta, per(unit, "alpha"), meaning, differentiate=plain)
 
 
 def _define_rate(sheet: Sheet, name: str, parameters: tuple[str, ...], value: sp.Expr | int) -> None:
     meaning = f"derivative of {name} by {', '.join(parameters)}"
-    sheet.define(sensitivity(name, *parameters), value, unit=per(UNITS[name], *parameters), meaning=meaning)
+    sheet.define(sensitivity(name, *parameters), value, per(UNITS[name], *parameters), meaning)
 
 
 def _omega_rates() -> dict[tuple[str, ...], sp.Expr]:
@@ -145,9 +121,7 @@ def _omega_second_rates() -> dict[tuple[str, ...], sp.Expr]:
 def _define_turning(sheet: Sheet, speed: sp.Symbol) -> None:
     """The way of turning that the strokes of a whole design depend on: the sign of the speed given."""
     backwards = select(lt(speed, 0), -1, nan)
-    sheet.define(
-        "turning", select(le(0, speed), 1, backwards), unit=NONE, meaning="way of turning", rigid=True
-    )
+    sheet.define("turning", select(le(0, speed), 1, backwards), NONE, "way of turning", rigid=True)
 
 
 def state_sheet() -> Sheet:
@@ -156,9 +130,9 @@ def state_sheet() -> Sheet:
     omega stands in the place of omega0: a derivative by it carries omega0's name.
     """
     sheet = Sheet(())
-    sheet.define("omega2", omega**2, unit=UNITS["omega2"], meaning="square of the crank's speed")
-    sheet.define("stalled", lt(omega2, 0), unit=NONE, meaning="never: a given speed is real")
-    sheet.define("turn", select(le(0, omega), 1, -1), unit=NONE, meaning="way of turning")
+    sheet.define("omega2", omega**2, UNITS["omega2"], "square of the crank's speed")
+    sheet.define("stalled", lt(omega2, 0), NONE, "never: a given speed is real")
+    sheet.define("turn", select(le(0, omega), 1, -1), NONE, "way of turning")
     _define_turning(sheet, omega)
     sheet.define("not_stalled", 0)
     sheet.define("inv_omega", 0)  # where alpha does not change omega

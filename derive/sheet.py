@@ -48,10 +48,10 @@ class Sheet:
         self,
         name: str,
         expression: sp.Expr | int,
-        *,
         unit: Unit | None = None,
         meaning: str = "",
         source: str = "",
+        *,
         differentiate: sp.Expr | None = None,
         rigid: bool = False,
     ) -> sp.Symbol:

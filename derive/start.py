@@ -77,20 +77,11 @@ def define_start(sheet: Sheet) -> None:
     """alpha_BC and a_C differentiated by alpha; other derivatives of them are the chain rule's."""
     prove_start()
     sheet.define("near_start", IS_NEAR)
-    sheet.define("sine_excess", SINE_EXCESS, unit=NONE, meaning="sin(theta) - theta cos(theta) near 0")
-    sheet.define(
-        "rod_start", ROD_START, unit=NONE, meaning="alpha_BC_wrt_alpha, where the crank has just started"
-    )
-    sheet.define(
-        "slider_start", SLIDER_START, unit=LENGTH, meaning="a_C_wrt_alpha, where the crank has just started"
-    )
+    sheet.define("sine_excess", SINE_EXCESS, NONE, "sin(theta) - theta cos(theta) near 0")
+    sheet.define("rod_start", ROD_START, NONE, "alpha_BC_wrt_alpha, where the crank has just started")
+    sheet.define("slider_start", SLIDER_START, LENGTH, "a_C_wrt_alpha, where the crank has just started")
     for name, start in (("alpha_BC", rod_start), ("a_C", symbol("slider_start"))):
         plain, unit = sheet.chain_rule(name, "alpha"), sheet.equations[name].unit
         assert unit is not None
-        sheet.define(
-            f"{name}_wrt_alpha",
-            select(near_start, start, plain),
-            unit=per(unit, "alpha"),
-            meaning=f"derivative of {name} by alpha",
-            differentiate=plain,
-        )
+        sheet.define(f"{name}_wrt_alpha", select(near_start, start, plain), per(unit, "alpha"),
+                     f"derivative of {name} by alpha", differentiate=plain)  # fmt: skip

@@ -5,7 +5,6 @@ one step: a failure, an interruption or a kill leaves the old set or the new one
 the same keeps its time stamp, so that nothing compiled from it is lost.
 """
 
-import difflib
 import hashlib
 import os
 import shutil
@@ -29,6 +28,7 @@ from desaxe.compiler.text import write_function
 from desaxe.mechanism.inputs import INPUTS, LEAST
 from desaxe.mechanism.names import CENTRES, LOADS
 from desaxe.support.files import staging, swap_in
+from desaxe.support.generated import Generated
 from desaxe.support.locks import locked
 
 from .build import Derivation
@@ -246,20 +246,8 @@ def _cut(program: Program, outputs: tuple[str, ...]) -> Program:
 
 def differences(files: Mapping[str, str], folder: Path) -> list[str]:
     """Unified diffs between the rendered and the committed files; empty if all are fresh."""
-    found = []
-    there = {path.name for path in folder.glob("*.py")}
-    for name in sorted({*files, *there}):
-        old = (folder / name).read_bytes().decode() if name in there else ""
-        new = files.get(name, "")
-        if old != new or (name in there) != (name in files):
-            diff = difflib.unified_diff(
-                old.splitlines(True),
-                new.splitlines(True),
-                f"{folder.name}/{name} (there)",
-                f"{name} (derived)",
-            )
-            found.append("".join(diff) or f"{folder.name}/{name}: only its presence differs\n")
-    return found
+    gone = {path.name: None for path in folder.glob("*.py") if path.name not in files}
+    return [f"{line}\n" for line in Generated(folder, {**files, **gone}).diff()]
 
 
 def write(files: Mapping[str, str], folder: Path) -> list[str]:
