@@ -247,7 +247,8 @@ def _cut(program: Program, outputs: tuple[str, ...]) -> Program:
 def differences(files: Mapping[str, str], folder: Path) -> list[str]:
     """Unified diffs between the rendered and the committed files; empty if all are fresh."""
     gone = {path.name: None for path in folder.glob("*.py") if path.name not in files}
-    return [f"{line}\n" for line in Generated(folder, {**files, **gone}).diff()]
+    every = (Generated(folder.parent, {f"{folder.name}/{n}": text}) for n, text in {**files, **gone}.items())
+    return ["".join(f"{line}\n" for line in one.diff()) for one in every if one.stale()]
 
 
 def write(files: Mapping[str, str], folder: Path) -> list[str]:
