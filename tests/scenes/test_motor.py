@@ -186,3 +186,22 @@ def test_a_sweep_has_the_steady_states_in_its_store(tmp_path):
         np.testing.assert_array_equal(back["omega_mean"], result.steady.dataset["omega_mean"])
         assert xarray.open_zarr(place)["Y"].shape == result.dataset["Y"].shape
     assert "group steady" in result.report()
+
+
+def test_a_torque_over_the_angle_drives_the_machine_of_a_scene():
+    """A damper takes the work of a turn: the mean of a linear table, which repeats, times 2 pi."""
+    torque = dx.over_theta(["0 deg", "90 deg", "180 deg", "270 deg"], [3, 6, 3, 1], "linear")
+    pump = dx.Machine(ec=0.0, AB=0.05, BC=0.2, m_slider=2, I_crank=0.5, F_Y=dx.damper(linear=30.0))
+    found = pump.scene((), steady={"torque": torque}).run().steady.found
+    assert found["status"] == 0
+    assert found["work"] == pytest.approx(2 * np.pi * (3 + 6 + 3 + 1) / 4, rel=1e-9)
+
+
+@pytest.mark.parametrize("place", ["loads.mu", "loads.F_Y"])
+def test_a_motor_or_a_load_where_a_number_stands_is_refused(place):
+    wrong = (
+        dx.over_theta([0, 3], [3, 6], "linear") if place == "loads.mu" else dx.over_omega([0, 50], [20, 0])
+    )
+    scene = {"outputs": ["Y"], "mechanism": {"AB": 1, "BC": 3, "ec": 0}, "motion": {"theta": 1}}
+    with pytest.raises(SceneError, match=f"{place} = .*: it must be "):
+        dx.scene({**scene, "loads": {place.partition(".")[2]: wrong}})

@@ -11,6 +11,7 @@ import numpy as np
 from ...design.steady.result import NUMBERS, Steady
 from ...design.steady.steady import FLUCTUATION, FLYWHEEL, steady
 from ...evaluation.labels import input_attributes
+from ...loads.load import Load
 from ...loads.motors import Motor
 from ...mechanism.inputs import OTHERS, Input
 from ...mechanism.names import LENGTHS
@@ -75,7 +76,7 @@ def on_motor(
     torque = table["torque"]
     if isinstance(torque, Mapping):
         torque = motor_of("steady.torque", torque, folder, units)
-    elif not isinstance(torque, Motor):
+    elif not isinstance(torque, (Motor, Load)):
         torque = _number("torque", TORQUE, torque, units)
     speeds = {n: v for n, v in inputs.items() if n in SPEEDS}
     given = {n: v for n, v in inputs.items() if n != "theta" and n not in SPEEDS}

@@ -55,9 +55,11 @@ def read_number(row: Input, key: str, written: float | str, units: UnitSystem) -
     """The number of a row; SceneError by its key where it is bad."""
     try:
         return read(row, written, "a scene", system=units)
+    except TypeError:
+        reason = f"it must be {row.limit}"
     except ValueError as error:  # what it says after the name and the value
         reason = str(error).partition(": ")[2] or str(error)
-        raise SceneError(f"{key} = {shown(written)}: {reason}") from None
+    raise SceneError(f"{key} = {shown(written)}: {reason}")
 
 
 def with_unit_in(units: UnitSystem, name: str, written: float | str) -> str:
