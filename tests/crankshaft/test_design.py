@@ -77,6 +77,26 @@ def test_the_angles_at_which_a_torque_has_a_value():
     assert boxer.crossings("F_inertia_Y")["status"] == boxer.crossings("F_inertia_X")["status"] == 3
 
 
+def test_the_phase_at_which_a_torque_has_a_value():
+    rms = THREE.drive(**{"phase[1]": 120})["torque_rms"]
+    result = THREE.solve(over={"phase[1]": (112, 135)}, where={("rms", "T_in"): rms})
+    assert result["phase[1]"] == pytest.approx([120.0, 130.0], abs=1e-6)  # and its mirror image
+    mass = THREE.solve(over={"m_slider": (0.2, 0.9)}, where={("max", "T_in"): 60.0})
+    assert THREE.peak("T_in", kind="max", m_slider=mass["m_slider"][0])["value"] == pytest.approx(
+        60.0, rel=1e-9
+    )
+    h, value = 1e-5, 0.045
+    ends = [
+        THREE.solve(over={"m_slider": (0.2, 0.9)}, where={("max", "T_in"): 60.0}, AB=value + side * h)[
+            "m_slider"
+        ]
+        for side in (1, -1)
+    ]
+    assert mass["gradient"]["AB"][0] == pytest.approx((ends[0] - ends[1])[0] / (2.0 * h), rel=1e-4)
+    with pytest.raises(TypeError, match="no input 'm_piston'"):
+        THREE.solve(over={"m_slider": (0.2, 0.9)}, where={("max", "T_in"): 60.0}, m_piston=1.0)
+
+
 def test_peaks_of_many_are_those_of_each():
     changes = {"AB": [0.044, 0.045], "phase[1]": [100.0, 120.0]}
     for kind in ("max", "min", "absmax"):

@@ -195,11 +195,12 @@ class SliderSums:
         bent = (callable(v) or (name == "mu" and np.any(v)) for row in rows for name, v in row.items())
         return not any(bent) and not register().definitions
 
-    def shared_lengths(self) -> dict[str, Any]:
-        """The lengths of the sliders; TypeError where these differ."""
+    def shared_lengths(self, inputs: Sequence[str]) -> dict[str, Any]:
+        """The lengths of the sliders; TypeError where these differ, and for inputs that there are none of."""
+        self.replaced({name: 0.0 for name in inputs if name not in STATE})
         rows = [{name: member.inputs.get(name) for name in LENGTHS} for member in self.members]
         if any(row != rows[0] for row in rows):
-            raise TypeError("optimize: of sliders with the same lengths")
+            raise TypeError("a search for inputs is of sliders with the same lengths")
         return rows[0]
 
     def numbers(self) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """`solve`: the values of one input at which a quantity of the design has a given value."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,7 +11,7 @@ from ..mechanism.messages import amount
 from ..mechanism.names import WHOLE
 from ..mechanism.quantity_units import unit_of
 from ..mechanism.status import SolveStatus
-from ..runtime.request import check_common
+from ..runtime.request import check_common, check_sliders
 from ..support.answer import Answer
 from ..support.deadline import Deadline
 from ..support.panels import Array, Panels, resolved
@@ -39,6 +39,7 @@ def solve(
     where: Mapping[Any, Any] | None = None,
     branch: int = 1,
     timeout: float | None = 120.0,
+    sliders: Any = None,
     **inputs: Any,
 ) -> dict[str, Any]:
     """All values of one input, within a range, at which a quantity of the design has a given value.
@@ -46,6 +47,7 @@ def solve(
     over     dict of the input -> (low, high)
     where    dict of one measure, as in `optimize`, -> its value: {("absmax", "a_C"): 900.0}; a named one may
              be a keyword instead: stroke="50 mm", time_ratio=1.1, margin=...
+    sliders  filled in by a `Crankshaft` of one machine, for a peak, an average or a quantity at an angle
     inputs   the others, as in `evaluate`, without theta
 
     Returns a dict:
@@ -67,8 +69,9 @@ def solve(
         [0.025]
     """
     check_common({}, branch)
-    sought, inputs = _sought(where, inputs)
-    space = space_of(over, inputs, branch, Deadline("solve", timeout), "solve")
+    check_sliders(sliders)
+    sought, inputs = _sought(where, inputs, INPUTS if sliders is None else (*INPUTS, *inputs))
+    space = space_of(over, inputs, branch, Deadline("solve", timeout), "solve", sliders)
     if len(space.names) != 1:
         raise ValueError(f"solve: over= has {', '.join(space.names)}: it takes one input")
     name = space.names[0]
@@ -101,10 +104,12 @@ def solve(
     return _solutions(name, sought, x, at(x), reachable)
 
 
-def _sought(where: Mapping[Any, Any] | None, inputs: dict[str, Any]) -> tuple[Target, dict[str, Any]]:
+def _sought(
+    where: Mapping[Any, Any] | None, inputs: dict[str, Any], known: Iterable[str]
+) -> tuple[Target, dict[str, Any]]:
     """The measure and its value, and the inputs without it."""
     named = {name: inputs.pop(name) for name in [*inputs] if is_named(name) and inputs[name] is not None}
-    check_inputs("solve", inputs, ("over", "where", "branch", "timeout", *INPUTS, *WHOLE, "margin"))
+    check_inputs("solve", inputs, ("over", "where", "branch", "timeout", *known, *WHOLE, "margin"))
     if where is not None and not isinstance(where, Mapping):
         raise TypeError(f"where = {shown(where)}: expected a dict, such as {{('absmax', 'a_C'): 900.0}}")
     every = {**(where or {}), **named}

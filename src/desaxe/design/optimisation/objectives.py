@@ -69,7 +69,10 @@ def space_of(
         check_inputs(caller, over, known)
         check_inputs(caller, fixed, known)
     else:
-        fixed = {**{n: v for n, v in sliders.shared_lengths().items() if n not in over}, **fixed}
+        fixed = {
+            **{n: v for n, v in sliders.shared_lengths([*over, *fixed]).items() if n not in over},
+            **fixed,
+        }
     if not over:
         raise ValueError("over= is empty: name at least one parameter and its bounds, such as ec=(0, 0.1)")
     both = [name for name in over if name in fixed]
