@@ -20,6 +20,7 @@ from .special import AT_KINK, ROUNDED
 
 EQUAL = 2.0**-40  # of a value: limits that differ by less are equal
 APART = 1e-9  # of a value: what the other side of a jump changes is more
+NEARBY = 1e-9  # rad: more than any angle is rounded by
 STEPS = np.append(0.0, 2.0 ** np.arange(7.0))  # last bits of an angle, up to ROUNDED
 # What keeps its value at a kink that moves with the lengths: a quantity, or the difference of two.
 KEPT: dict[int, tuple[str, ...]] = {
@@ -111,12 +112,14 @@ def _complete(values: ValuesUnderLoads, kind: int, jumps: Jumps, theta: Array, o
 def _jumps(values: ValuesUnderLoads, theta: Array) -> Jumps | None:
     """The jumps next to extrema; of an angle between two the one before it."""
     angles, kinds = values.course.jumps
-    with np.errstate(invalid="ignore"):
-        away = np.abs(theta[:, None] - angles)
-        room = BESIDE * np.spacing(np.maximum(np.abs(theta[:, None]), np.abs(angles)))
-        if values.designs.rubs:  # there `Course.aside` makes more angles equal
-            room[:, _turns_round(kinds)] = 1.5 * ROUNDED * np.spacing(1.0 + np.abs(theta[:, None]))
-        rows, places = np.nonzero(away <= room)
+    rows, places = np.nonzero(np.abs(theta[:, None] - angles) <= NEARBY)
+    starts, there = angles[rows, places], theta[rows]
+    room = BESIDE * np.spacing(np.maximum(np.abs(there), np.abs(starts)))
+    if values.designs.rubs:  # there `Course.aside` makes more angles equal
+        turning = _turns_round(kinds[places])
+        room = np.where(turning, 1.5 * ROUNDED * np.spacing(1.0 + np.abs(there)), room)
+    near = np.abs(there - starts) <= room
+    rows, places = rows[near], places[near]
     if not rows.size:
         return None
     starts = angles[rows, places]
