@@ -133,6 +133,16 @@ def test_an_arc_with_one_balance_ends_where_a_second_appears():
     assert all(math.isnan(slope) for slope in found["gradient"].values())
 
 
+def test_where_two_balances_end_and_jamming_begins_there_is_no_extremum():
+    """There the next double had one balance by rounding alone, and its value made a minimum of +inf."""
+    design = {"ec": -0.058501449617742916, "AB": 0.07192560315550124, "BC": 0.16120624679489065}
+    design |= {"omega0": -39.171379570360706, "mu": 1.4981931463077875, "F_Y": -300.0, "branch": -1}
+    design |= {"m_slider": 2.0, "m_rod": 1.0, "I_rod": 0.004, "g_Y": -9.81}
+    found = dx.peak("F_B_Y", kind="min", **design)
+    sampled = np.nanmin(dx.evaluate("F_B_Y", theta=THETA, **design))
+    assert sampled * (1.0 - 1e-5) <= found["value"] <= sampled
+
+
 def test_only_where_forces_balance():
     """Within these angles nothing balances once; outside of them nothing is wrong."""
     design = {**ENGINE, "ec": 0.0, "mu": 1.5, "omega0": 251.0}

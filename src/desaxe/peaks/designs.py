@@ -36,6 +36,7 @@ from .special import (
     SearchedDesigns,
     SearchResult,
     are_special,
+    balanced_nodes,
     complete,
     own_nodes,
     rubbing_nodes,
@@ -286,6 +287,7 @@ class PartialSearch:
             nodes = with_nodes(nodes, self.course.nodes_of(rows))
         if "mu" in some.columns:
             nodes = with_nodes(nodes, self._rubbing(rows, nodes, search))
+            nodes = np.ascontiguousarray(balanced_nodes(some, nodes.T).T)
         self._run(self.quantity, rows, nodes)
         found = self._found(rows)
         usable = complete(

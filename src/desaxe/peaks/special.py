@@ -142,6 +142,19 @@ def own_nodes(designs: SearchedDesigns) -> tuple[Array, list[tuple[int, float]]]
     return np.sort(np.clip(both, low, high), axis=1), ends
 
 
+def balanced_nodes(designs: SearchedDesigns, nodes: Array) -> Array:
+    """The nodes without those of an arc with one balance of forces that rounding alone makes.
+
+    Where two balances end and jamming begins the next double may have one, and any value.
+    """
+    size, count = nodes.shape
+    status = designs.values(("status",), np.repeat(np.arange(size), count), nodes.reshape(-1))["status"]
+    bad = np.isin(status.reshape(size, count), (JAMS, TWO_BALANCES))
+    before = np.maximum.accumulate(np.where(bad, nodes, -np.inf), axis=1)
+    after = np.minimum.accumulate(np.where(bad, nodes, np.inf)[:, ::-1], axis=1)[:, ::-1]
+    return np.where(after - before < AT_KINK, before, nodes)
+
+
 def _ends_of_balance(lengths: list[Array], mu: Array) -> Array:
     """The angles in a turn at which friction begins or ends to jam, |mu tan(phi)| = 1; NaN elsewhere."""
     ec, AB, BC = (length[:, None] for length in lengths)
