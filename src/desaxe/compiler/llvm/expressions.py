@@ -105,6 +105,7 @@ COMPARED = {
     ast.Lt: ("olt", "slt"), ast.LtE: ("ole", "sle"), ast.Gt: ("ogt", "sgt"), ast.GtE: ("oge", "sge"),
     ast.Eq: ("oeq", "eq"), ast.NotEq: ("une", "ne"),
 }  # fmt: skip
+CONVERTED = {"float": "f64", "int64": "i64", "int": "i64", "bool": "bool"}
 BINARY = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul"}
 
 
@@ -119,8 +120,7 @@ class Expressions:
         self._ends: list[tuple[str, str, str, str, str]] = []
         self._count = 0
         self._calls: dict[str, Callable[[Sequence[ast.expr]], LoopValue]] = {
-            "abs": self._abs, "len": self._length, "float": self._float, "bool": self._bool,
-            "int64": self._whole, "int": self._whole, "empty": self._empty, "zeros": self._zeros,
+            "abs": self._abs, "len": self._length, "empty": self._empty, "zeros": self._zeros,
             "isfinite": self._finite, "min": lambda nodes: self._least(nodes, True),
             "max": lambda nodes: self._least(nodes, False), "apart": lambda _: LoopValue("none", ()),
             "address": self._address, "call": self._call,
@@ -392,6 +392,8 @@ class Expressions:
         if isinstance(target, FunctionType) and target not in OURS:
             return self._called(target, [self.value(one) for one in node.args])
         name = getattr(target, "__name__", "")
+        if name in CONVERTED:
+            return self.converted(self.value(node.args[0]), CONVERTED[name])
         if name in self._calls:
             return self._calls[name](node.args)
         if name not in INTRINSICS:
@@ -438,15 +440,6 @@ class Expressions:
 
     def _length(self, nodes: Sequence[ast.expr]) -> LoopValue:
         return LoopValue("i64", self.value(nodes[0]).parts[1:2])
-
-    def _float(self, nodes: Sequence[ast.expr]) -> LoopValue:
-        return LoopValue("f64", (self.number(nodes[0]),))
-
-    def _whole(self, nodes: Sequence[ast.expr]) -> LoopValue:
-        return LoopValue("i64", (self.number(nodes[0], "i64"),))
-
-    def _bool(self, nodes: Sequence[ast.expr]) -> LoopValue:
-        return LoopValue("bool", (self.truth(nodes[0]),))
 
     def _finite(self, nodes: Sequence[ast.expr]) -> LoopValue:
         size = self.emit(f"call double @llvm.fabs.f64(double {self.number(nodes[0])})")

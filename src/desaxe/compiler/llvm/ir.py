@@ -11,6 +11,7 @@ import struct
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
+from ...support.template import file_text, filled
 from ..operations import OPERATIONS
 from ..program import Argument, Line, TableName, names_in, type_of
 
@@ -19,6 +20,7 @@ TYPES = {"f64": "double", "bool": "i1", "i64": "i64", "i8": "i8"}
 STORED = {"f64": "double", "bool": "i8", "i64": "i8"}  # in arrays
 BYTES = {"double": 8, "i8": 1, "i64": 8}
 WIDE = '"prefer-vector-width"="512"'
+LOOP = file_text(__package__, "loop.ll")
 
 
 class Kinds(NamedTuple):
@@ -74,6 +76,11 @@ class Body:
     def label(self, name: str) -> None:
         """The beginning of a block."""
         self.rows.append(f"{name}:")
+
+    def taken(self) -> list[str]:
+        """The instructions since the last call, which are taken out, for a text of some other function."""
+        rows, self.rows = self.rows, []
+        return [row.removeprefix("  ") for row in rows]
 
     def lines(self, lines: Iterable[Line]) -> None:
         """The operations of lines."""
@@ -233,7 +240,7 @@ class Loop(NamedTuple):
         body = Body({**dict.fromkeys((*self.values, *self.reads), "f64"), **types}, {}, lanes)
         for name in self.values:
             body.spread(name, f"%{name}.value")
-        spread, body.rows = body.rows, []
+        spread = body.taken()
         for name in self.reads:
             body.names[name] = body.load_points(f"%{name}.from", "%i")
         body.lines(self.lines)
@@ -247,23 +254,8 @@ class Loop(NamedTuple):
             )
             total = body.emit(f"add i64 %count, {own}")
         parameters = ", ".join(["i64 %n", *self.parameters(types)])
-        return "\n".join([
-            f"define internal i64 @{self.name}({parameters}) noinline {WIDE} {{",
-            f"  %last = sub i64 %n, {lanes}",
-            *spread,
-            "  br label %loop",
-            "loop:",
-            "  %at = phi i64 [ 0, %0 ], [ %after, %loop ]",
-            f"  %count = phi i64 [ 0, %0 ], [ {total}, %loop ]",
-            "  %i = call i64 @llvm.smin.i64(i64 %at, i64 %last)",
-            *body.rows,
-            f"  %after = add nuw nsw i64 %at, {lanes}",
-            "  %again = icmp ult i64 %after, %n",
-            "  br i1 %again, label %loop, label %end",
-            "end:",
-            f"  ret i64 {total}",
-            "}",
-        ])  # fmt: skip
+        words = {"NAME": self.name, "WIDE": WIDE, "LANES": str(lanes), "TOTAL": total}
+        return filled(LOOP, PARAMETERS=parameters, SPREAD=spread, POINTS=body.taken(), **words)
 
 
 def loop_of(

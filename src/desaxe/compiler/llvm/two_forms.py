@@ -7,6 +7,7 @@ Where all points of a block fail, the next block is tested first. The value of a
 
 from collections.abc import Sequence
 
+from ...support.template import file_text, filled
 from ..kernel import Kernel
 from ..program import Line
 from .ir import STORED, WIDE, Body, Loop, loop_of
@@ -15,6 +16,7 @@ BIGGEST = 512  # points of a block: their inputs and outputs stay in the first-l
 STACK = 32_768  # doubles that all buffers of a block may take
 APART = 72  # doubles between buffers: at a multiple of 4096 bytes a store holds up loads from other buffers
 FLAG = "fails_test"
+BLOCKS = file_text(__package__, "blocks.ll")
 
 
 def either_loop(kernel: Kernel, plain: Loop, stable: Loop, lanes: int) -> tuple[Loop, list[str]]:
@@ -78,55 +80,17 @@ def _blocks(
     block = max(16, min(BIGGEST, (STACK // (len(rooms) + len(answers) + 2) - APART) // 16 * 16))
     buffers = {"%flags": "i8", "%indices": "i64", **dict.fromkeys(rooms.values(), "double")}
     buffers |= dict(zip(answers, kinds, strict=True))
-    for buffer, kind in buffers.items():
-        body.do(f"{buffer} = alloca [{block + APART} x {kind}], align 64")
-    body.rows += f"""  %last = sub i64 %n, {lanes}
-  br label %blocks
-blocks:
-  %at = phi i64 [ 0, %0 ], [ %stop, %done ]
-  %fail = phi i1 [ false, %0 ], [ %now, %done ]
-  %left = phi i64 [ 0, %0 ], [ %total, %done ]
-  %more = icmp slt i64 %at, %n
-  br i1 %more, label %block, label %end
-block:
-  %start = call i64 @llvm.smin.i64(i64 %at, i64 %last)
-  %rest = sub i64 %n, %start
-  %size = call i64 @llvm.smin.i64(i64 %rest, i64 {block})
-  %odd = and i64 %size, {lanes - 1}
-  %exact = icmp eq i64 %odd, 0""".splitlines()
+    rows = [f"{buffer} = alloca [{block + APART} x {kind}], align 64" for buffer, kind in buffers.items()]
     there = {name: body.element("double", f"%{name}.from", "%start") for name in points.reads}
     outputs = [body.element(kind, f"%to.{k}", "%start") for k, kind in enumerate(kinds)]
-    body.do("br i1 %fail, label %ahead, label %first")
-    body.label("ahead")
-    failed = tests.call(body, "%size", there, ["%flags"])
-    body.rows += f"""  %same = icmp eq i64 {failed}, %size
-  %all_fail = and i1 %same, %exact
-  br i1 %all_fail, label %close, label %first
-first:""".splitlines()
-    count = plain.call(body, "%size", there, [*outputs, "%flags"])
-    body.rows += f"""  %none = icmp eq i64 {count}, 0
-  br i1 %none, label %done, label %some
-some:
-  %most = icmp eq i64 {count}, %size
-  %every = and i1 %most, %exact
-  br i1 %every, label %close, label %mixed
-close:""".splitlines()
-    in_close = stable.call(body, "%size", there, outputs)
-    body.rows += """  br label %done
-mixed:
-  %filled = call i64 @indices(ptr %flags, i64 %size, ptr %indices)""".splitlines()
+    parts = {"BUFFERS": rows, "ADDRESSES": body.taken()}
+    words = {"LANES": str(lanes), "ODD": str(lanes - 1), "BLOCK": str(block)}
+    words["FAILED"], parts["TESTS"] = tests.call(body, "%size", there, ["%flags"]), body.taken()
+    words["COUNT"], parts["PLAIN"] = plain.call(body, "%size", there, [*outputs, "%flags"]), body.taken()
+    words["IN_CLOSE"], parts["STABLE"] = stable.call(body, "%size", there, outputs), body.taken()
     for name, room in rooms.items():
         body.do(f"call void @compress(ptr {room}, ptr {there[name]}, ptr %indices, i64 %filled)")
-    in_mixed = stable.call(body, "%filled", rooms, answers)
+    words["IN_MIXED"] = stable.call(body, "%filled", rooms, answers)
     for output, answer, kind in zip(outputs, answers, kinds, strict=True):
         body.do(f"call void @expand_{kind}(ptr {output}, ptr {answer}, ptr %indices, i64 %filled)")
-    body.rows += f"""  br label %done
-done:
-  %own = phi i64 [ 0, %first ], [ {in_close}, %close ], [ {in_mixed}, %mixed ]
-  %now = phi i1 [ false, %first ], [ true, %close ], [ false, %mixed ]
-  %total = add i64 %left, %own
-  %stop = add i64 %at, {block}
-  br label %blocks
-end:
-  ret i64 %left""".splitlines()
-    return body.rows
+    return filled(BLOCKS, GATHERED=body.taken(), **parts, **words).splitlines()
