@@ -3,7 +3,7 @@
 A function of this table is a method of the same name. To add one, add its name.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import wraps
 from inspect import Parameter, Signature, signature
 from typing import Any, NamedTuple
@@ -80,7 +80,10 @@ def import_function(name: str) -> Callable[..., Any]:
 def method_of(function: Callable[..., Any], name: str) -> Callable[..., Any]:
     """A function as a method of a machine."""
     own = signature(function)
-    takes = _takes(own, name)
+    kept = [*_parameters(own, name)]
+    positional = tuple(p.name for p in kept if p.kind is Parameter.POSITIONAL_OR_KEYWORD)
+    anything = any(p.kind is Parameter.VAR_KEYWORD for p in kept)
+    takes = Takes(frozenset(own.parameters), positional, anything)
 
     @wraps(function)
     def method(self: Any, *args: Any, as_quantity: bool = False, **inputs: Any) -> Any:
@@ -91,7 +94,8 @@ def method_of(function: Callable[..., Any], name: str) -> Callable[..., Any]:
 
     method.__qualname__ = f"Machine.{name}"
     method.__doc__ = f"{INTRODUCTION.format(name=name)}\n{UNITS}\n    {function.__doc__}"
-    method.__dict__["__signature__"] = _signature(own, name)
+    kept.insert(len(kept) - anything, AS_QUANTITY)
+    method.__dict__["__signature__"] = own.replace(parameters=[SELF, *kept])
     return method
 
 
@@ -103,35 +107,17 @@ class Takes(NamedTuple):
     anything: bool
 
 
-def _takes(own: Signature, name: str) -> Takes:
-    parameters, dropped = own.parameters.values(), NOT_FILLED.get(name, ())
-    kinds = Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD
-    positional = tuple(p.name for p in parameters if p.kind in kinds and p.name not in dropped)
-    return Takes(
-        frozenset(own.parameters), positional, any(p.kind is Parameter.VAR_KEYWORD for p in parameters)
-    )
-
-
-def _signature(own: Signature, name: str) -> Signature:
-    """The signature of the method: inputs of the machine are optional."""
-    parameters = [Parameter("self", Parameter.POSITIONAL_OR_KEYWORD)]
+def _parameters(own: Signature, name: str) -> Iterator[Parameter]:
+    """The parameters of a method: those that a machine gives are optional, what is looked for is dropped."""
     for parameter in own.parameters.values():
-        if parameter.name in NOT_FILLED.get(name, ()) and parameter.kind is not Parameter.KEYWORD_ONLY:
-            continue
-        if parameter.name == "sliders":  # which a crankshaft fills in
-            continue
-        given = parameter.kind is Parameter.KEYWORD_ONLY and parameter.name in (
-            *FILLED,
-            "stroke",
-            "time_ratio",
-        )
-        parameters.append(parameter.replace(default=None) if given else parameter)
-    extra = Parameter("as_quantity", Parameter.KEYWORD_ONLY, default=False, annotation=bool)
-    last = next((i for i, p in enumerate(parameters) if p.kind is Parameter.VAR_KEYWORD), len(parameters))
-    parameters.insert(last, extra)
-    return own.replace(parameters=parameters)
+        is_keyword = parameter.kind is Parameter.KEYWORD_ONLY
+        if parameter.name != "sliders" and (is_keyword or parameter.name not in NOT_FILLED.get(name, ())):
+            is_given = is_keyword and parameter.name in (*FILLED, "stroke", "time_ratio")
+            yield parameter.replace(default=None) if is_given else parameter
 
 
+SELF = Parameter("self", Parameter.POSITIONAL_OR_KEYWORD)
+AS_QUANTITY = Parameter("as_quantity", Parameter.KEYWORD_ONLY, default=False, annotation=bool)
 FILLED = ("ec", "AB", "BC")
 OF_RANGES = ("enclose", "tolerance")  # in which a pair must say what it means, in the caller's units
 
