@@ -22,6 +22,8 @@ from .measures import Measure, checked, measured, text_of
 if TYPE_CHECKING:
     import xarray as xr
 
+FEASIBLE = ("margin", "can_turn", "status", "kind")
+
 
 @with_known_keywords
 def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, **inputs: Any) -> "xr.Dataset":
@@ -56,10 +58,9 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
             raise ValueError(f"{name}: a map takes numbers and 1-d arrays, got the shape {axis.shape}")
     dimensions = [name for name, axis in axes.items() if axis.ndim]
     shape = tuple(axes[name].size for name in dimensions)
-    open_axes = {
-        n: _along(axis, dimensions.index(n) if axis.ndim else None, len(shape)) for n, axis in axes.items()
-    }
-    designs = {n: np.broadcast_to(a, shape).reshape(-1) for n, a in open_axes.items()}
+    planes = np.meshgrid(*(axes[name] for name in dimensions), indexing="ij")
+    grids = {**axes, **dict(zip(dimensions, planes, strict=True))}
+    designs = {n: np.broadcast_to(grid, shape).reshape(-1) for n, grid in grids.items()}
     variables = _feasible(designs, shape, dimensions)
     for measure, found in measured(wanted, designs | loads, branch).items():
         name, meaning = _name(measure), _meaning(measure)
@@ -81,32 +82,22 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
     return with_loads(xarray.Dataset(variables, coordinates, about), loads)
 
 
-def _along(axis: Any, place: int | None, count: int) -> Any:
-    return axis if place is None else axis.reshape([-1 if k == place else 1 for k in range(count)])
-
-
 def _feasible(designs: dict[str, Any], shape: tuple[int, ...], dimensions: list[str]) -> dict[str, Any]:
-    found = of_arrays(*(designs[name] for name in LENGTHS))
-    kinds = np.array([KINDS.index(kind) for kind in found["kind"]], np.int8)
-    flags = {
-        "status": (found["status"], STATUS_FLAGS[:5], "status"),
-        "kind": (kinds, tuple(kind.replace(" ", "_") for kind in KINDS), "how the crank can move"),
+    found = {
+        n: np.reshape(v, shape) for n, v in of_arrays(*(designs[n] for n in LENGTHS)).items() if n in FEASIBLE
     }
+    kinds = np.array([KINDS.index(kind) for kind in found["kind"].flat], np.int8).reshape(shape)
     variables: dict[str, Any] = {
-        "margin": (
-            dimensions,
-            found["margin"].reshape(shape),
-            {"units": "m", "long_name": "margin BC - AB - |ec|"},
-        ),
-        "can_turn": (dimensions, found["can_turn"].reshape(shape), {"long_name": "the crank turns fully"}),
+        "margin": (dimensions, found["margin"], {"units": "m", "long_name": "margin BC - AB - |ec|"}),
+        "can_turn": (dimensions, found["can_turn"], {"long_name": "the crank turns fully"}),
     }
-    for name, (codes, meanings, told) in flags.items():
-        attributes = {
-            "long_name": told,
-            "flag_values": np.arange(len(meanings), dtype=np.int8),
-            "flag_meanings": " ".join(meanings),
-        }
-        variables[name] = (dimensions, np.asarray(codes, np.int8).reshape(shape), attributes)
+    flags = (
+        ("status", found["status"], STATUS_FLAGS[:5], "status"),
+        ("kind", kinds, tuple(kind.replace(" ", "_") for kind in KINDS), "how the crank can move"),
+    )
+    for name, codes, meanings, words in flags:
+        values = {"flag_values": np.arange(len(meanings), dtype=np.int8), "flag_meanings": " ".join(meanings)}
+        variables[name] = (dimensions, codes, {"long_name": words, **values})
     return variables
 
 

@@ -90,9 +90,12 @@ def drive(
             course = _over_a_turn(design, found, slopes)
             wheel = flywheel_for(design, required) if "alpha" not in design.numbers else None
             if wheel is not None:
-                found |= {"flywheel_inertia": wheel.inertia, "flywheel_torque": wheel.torque}
-                slopes |= {"flywheel_inertia": wheel.gradient, "flywheel_torque": wheel.torque_gradient}
-                course |= {"theta_of_speed": wheel.theta, "speed": np.abs(wheel.omega)}
+                motion, by = wheel
+                found |= {"flywheel_torque": motion.torque, "flywheel_inertia": motion.inertia}
+                for k, figure in enumerate(("flywheel_torque", "flywheel_inertia")):
+                    slopes[figure] = {name: pair[k] for name, pair in by.items()}
+                speed = np.abs(motion.panels.values["omega"]).ravel()
+                course |= {"theta_of_speed": motion.panels.x.ravel(), "speed": speed}
             _starting(design, reverse, found, slopes)
     except NoCycleError as error:
         status, course = error.status, {}

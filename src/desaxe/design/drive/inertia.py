@@ -17,6 +17,7 @@ the fastest and the slowest angle.
 """
 
 from collections.abc import Callable
+from functools import partial
 from math import inf, nan
 from typing import Any, NamedTuple
 
@@ -28,17 +29,6 @@ from ..turn.turn import CREEP, Turn
 
 ROUNDS = 60  # of corrections of the friction
 SETTLED = 1e-12  # of the inertia: what a correction may still change
-
-
-class Flywheel(NamedTuple):
-    """Inertia [kg m^2], constant torque [N m], their derivatives by name, and the speed over the turn."""
-
-    inertia: float
-    torque: float
-    gradient: dict[str, float]
-    torque_gradient: dict[str, float]
-    theta: Array
-    omega: Array
 
 
 class FlywheelMotion(NamedTuple):
@@ -55,21 +45,22 @@ class FlywheelMotion(NamedTuple):
         return {name: self.panels.at(theta, v) for name, v in self.panels.values.items()}
 
 
-def flywheel_for(design: Turn, fluctuation: float) -> Flywheel | None:
-    """The smallest flywheel that keeps the required fluctuation of speed; None if none is found."""
+def flywheel_for(
+    design: Turn, fluctuation: float
+) -> tuple[FlywheelMotion, dict[str, tuple[float, float]]] | None:
+    """The motion with the smallest flywheel that keeps the required fluctuation, None if none settles.
+
+    Besides, by each input and by `fluctuation`, the derivatives of torque and inertia.
+    """
     state = _store(design, fluctuation, None)
-    settled = not design.has_friction
-    for _ in range(0 if settled else ROUNDS):
+    for _ in range(ROUNDS if design.has_friction else 0):
         before, state = state, _store(design, fluctuation, state)
-        settled = abs(state.inertia - before.inertia) <= SETTLED * abs(state.inertia)
-        if settled:
+        if abs(state.inertia - before.inertia) <= SETTLED * abs(state.inertia):
             break
-    if not settled:
-        return None
-    slopes = _gradient(design, fluctuation, state)
-    inertia, torque = ({name: pair[k] for name, pair in slopes.items()} for k in (1, 0))
-    omega = state.panels.values["omega"].ravel()
-    return Flywheel(state.inertia, state.torque, inertia, torque, state.panels.x.ravel(), omega)
+    else:
+        if design.has_friction:
+            return None
+    return state, _gradient(design, fluctuation, state)
 
 
 def _store(design: Turn, fluctuation: float, before: FlywheelMotion | None) -> FlywheelMotion:
@@ -88,13 +79,9 @@ def _store(design: Turn, fluctuation: float, before: FlywheelMotion | None) -> F
     edges = design.edges(["T_in"], motion)
     panels = resolved(loads, edges if before is None else np.append(edges, before.panels.edges))
     load, M, slope = (panels.values[name] for name in names)
-    speed = abs(design.numbers["omega0"])
-    drive = panels.integral(load) / design.angle
+    speed, drive = abs(design.numbers["omega0"]), panels.integral(load) / design.angle
     work = panels.running(drive - load)
-
-    def stored(share: float) -> tuple[Any, Any, Any, Any]:
-        return storing(panels, work, M, speed, share)
-
+    stored = partial(storing, panels, work, M, speed)
     J, C, fastest, slowest = stored(fluctuation)
     if J <= 0.0:  # the mechanism itself stores more than is needed
         without = _without(lambda share: stored(share)[0], fluctuation, J)
@@ -140,12 +127,12 @@ def _gradient(design: Turn, fluctuation: float, state: FlywheelMotion) -> dict[s
     names = ["T_in_wrt_omega", "T_in_wrt_alpha", *(f"T_in_wrt_{name}" for name in own)]
     panels = state.panels
     omega, alpha = panels.values["omega"], panels.values["alpha"]
-    flat = {name: v.reshape(omega.shape) for name, v in _torque(design, names, state).items()}
+    along = design.values(names, panels.x.ravel(), motion=state.motion)
+    flat = {name: v.reshape(omega.shape) for name, v in along.items()}
     mass = flat["T_in_wrt_alpha"] + state.inertia
-    growth = panels.running(flat["T_in_wrt_omega"] / omega / mass)
-    last = panels.integral(flat["T_in_wrt_omega"] / omega / mass)
-
-    per_panel = np.cumsum((flat["T_in_wrt_omega"] / omega / mass @ WEIGHT) * panels.half[:, 0])
+    rate = flat["T_in_wrt_omega"] / omega / mass
+    growth, per_panel = panels.running(rate), np.cumsum((rate @ WEIGHT) * panels.half[:, 0])
+    last = per_panel[-1]
     extremes = np.array([state.fastest, state.slowest])
 
     def response(forcing: Array, jump: Any = 0.0) -> tuple[float, float, float]:
@@ -156,8 +143,7 @@ def _gradient(design: Turn, fluctuation: float, state: FlywheelMotion) -> dict[s
         fastest, slowest = panels.at(extremes, inner)
         return float(np.exp(-last) * (panels.integral(forced) + jumps.sum())), float(fastest), float(slowest)
 
-    free = [1.0 - np.exp(-last), *panels.at(np.array([state.fastest, state.slowest]), np.exp(-growth))]
-    free[0] = -free[0]
+    free = [np.exp(-last) - 1.0, *panels.at(extremes, np.exp(-growth))]
     columns = np.array([free, response(np.ones_like(alpha)), response(-alpha)]).T
     speed = design.numbers["omega0"]
     high, low = 1.0 + fluctuation / 2.0, 1.0 - fluctuation / 2.0
@@ -173,8 +159,3 @@ def _gradient(design: Turn, fluctuation: float, state: FlywheelMotion) -> dict[s
     sides["fluctuation"] = np.array([0.0, speed**2 * high, -(speed**2) * low])
     solved = np.linalg.solve(columns, np.array(list(sides.values())).T)[1:]
     return {name: (float(T), float(J)) for name, T, J in zip(sides, *solved, strict=True)}
-
-
-def _torque(design: Turn, names: list[str], state: FlywheelMotion) -> dict[str, Array]:
-    """The derivatives of the torque along the motion."""
-    return design.values(names, state.panels.x.ravel(), motion=state.motion)
