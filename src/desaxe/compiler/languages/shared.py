@@ -17,7 +17,7 @@ _WORD = re.compile(r"\b(nan|inf|True|False)\b")
 
 
 class Spelling(NamedTuple):
-    """How a language writes an assignment, what follows it as a comment, and the words of constants."""
+    """The text of an assignment in a language, what follows it as a comment, and the words of constants."""
 
     column: str  # of the operation table
     statement: str
