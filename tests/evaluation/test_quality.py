@@ -140,9 +140,13 @@ def test_one_name_or_many_numbers_or_arrays():
             assert its.conditions[parameter][row, column] == pytest.approx(condition, rel=1e-9)
 
 
-def test_units_are_understood():
-    text = dx.evaluate("a_C", theta="60 deg", ec="10 mm", AB="125 mm", BC="0.35 m", omega0=157, quality=True)
-    number = dx.evaluate("a_C", **POINT | {"theta": math.radians(60)}, quality=True)
+@pytest.mark.parametrize(
+    "load", [0.0, dx.over_theta([0.0, 2.0, 4.0], [0.0, -500.0, 0.0]), dx.over_Y([0.2, 0.4], [0.0, -500.0])]
+)
+def test_units_are_understood(load):
+    texts = {"theta": "60 deg", "ec": "10 mm", "AB": "125 mm", "BC": "0.35 m", "omega0": 157}
+    text = dx.evaluate("T_in", **texts, m_slider="2 kg", F_Y=load, quality=True)
+    number = dx.evaluate("T_in", **POINT | {"theta": math.radians(60)}, m_slider=2.0, F_Y=load, quality=True)
     assert text.conditions == pytest.approx(number.conditions)
 
 

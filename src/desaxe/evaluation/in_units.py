@@ -49,13 +49,11 @@ class Shown(NamedTuple):
         if hasattr(value, "dims"):
             labelled = value.to_dataset(name=unit.name)
             return in_units(labelled, self.system, as_quantity=self.as_quantity)[unit.name]
-        if hasattr(value, "error_bound"):
-            parts = {key: self.entry(getattr(value, key), unit) for key in ("value", "error_bound")}
-            return value._replace(**parts)
         if isinstance(value, Mapping):
             return {key: self.entry(part, self._of(unit, key)) for key, part in value.items()}
         if hasattr(value, "_fields"):
-            return value._replace(**self.entry({key: getattr(value, key) for key in unit}, unit))
+            keys = unit if isinstance(unit, Mapping) else ("value", "error_bound")  # a record, or a Quality
+            return value._replace(**self.entry({key: getattr(value, key) for key in keys}, unit))
         if isinstance(value, (tuple, list)):
             return type(value)(self.entry(part, unit) for part in value)
         return self.number(value, conversion_of(unit, self.system))
@@ -102,6 +100,10 @@ def _dataset_in_units(
     as_quantity: bool,
 ) -> "xr.Dataset":
     """A Dataset in other units, its attributes too; see `in_units`."""
+    with IMPORTS:
+        import numpy as np
+
+        from .labels import known_loads, loads_text, said
     result = dataset.copy()
     for key in map(str, dataset.variables):
         array = dataset[key]
@@ -113,39 +115,23 @@ def _dataset_in_units(
         lazy = array.chunks is not None  # a sweep's, which may be larger than memory
         values = array.data / float(conversion.si) if lazy else conversion.shown(array.values)
         if given is not None and key in given:
-            with IMPORTS:
-                import numpy as np
-
             values = np.asarray(given[key], dtype=np.float64)
         attributes = {**array.attrs, "units": conversion.unit}
         if as_quantity and key in dataset.data_vars and conversion.unit != "1":
-            with IMPORTS:
-                import numpy as np
-
             values = registry().Quantity(values if lazy else np.asarray(values), conversion.unit)
             del attributes["units"]
         changed = {key: (array.dims, values, attributes)}
         result = result.assign_coords(changed) if key in dataset.coords else result.assign(changed)
-    with IMPORTS:
-        from .labels import known_loads, loads_text
     loads = known_loads(dataset)
     if loads:
         result.attrs["loads"] = loads_text(loads, units)
     if "scene" in dataset.attrs:
-        result.attrs["scene"] = _scene_of(dataset, result)
+        fixed = [name for name, array in dataset.coords.items() if name in INPUTS and not array.ndim]
+        old, new = (
+            [said(str(name), one[name], one[name].attrs.get("units", "1")) for name in fixed]
+            for one in (dataset, result)
+        )
+        told = dict(zip(old, new, strict=True))
+        what, mark, numbers = str(dataset.attrs["scene"]).partition("; ")
+        result.attrs["scene"] = what + mark + ", ".join(told.get(one, one) for one in numbers.split(", "))
     return result
-
-
-def _scene_of(before: "xr.Dataset", after: "xr.Dataset") -> str:
-    """The attribute `scene` with the numbers of the inputs in their units."""
-    with IMPORTS:
-        from .labels import said
-
-    fixed = [name for name, array in before.coords.items() if name in INPUTS and not array.ndim]
-    old, new = (
-        [said(str(name), found[name], found[name].attrs.get("units", "1")) for name in fixed]
-        for found in (before, after)
-    )
-    told = dict(zip(old, new, strict=True))
-    what, mark, numbers = str(before.attrs["scene"]).partition("; ")
-    return what + mark + ", ".join(told.get(part, part) for part in numbers.split(", "))

@@ -93,12 +93,11 @@ def _quality(name: str, given: Mapping[str, Any], branch: int, threads: int | No
     f, shape = np.asarray(found[name]), broadcast_shape(arrays)
     with np.errstate(all="ignore"):
         steps = {p: _step(arrays[p], slope) for p, slope in by.items()}
-        conditions = {p: np.where(step == 0.0, 0.0, step / np.abs(f)) for p, step in steps.items()}
+        conditions = {p: _condition(f, step, shape) for p, step in steps.items()}
         if gap:
             steps |= _steps_with_margin(arrays, by, np.asarray(found["margin"]))
         bound = np.abs(f) * ROUNDED_ONCE if name == "margin" else _bound(f, steps)
-    plain = {p: _shaped(np.where(np.isnan(f), np.nan, c), shape) for p, c in conditions.items()}
-    return Quality(found[name], plain, _shaped(bound, shape), _digits(f, bound, shape))
+    return Quality(found[name], conditions, _shaped(bound, shape), _digits(f, bound, shape))
 
 
 def _slope_names(name: str, needs: Sequence[str], state: bool) -> dict[str, str]:
@@ -126,12 +125,9 @@ def _digits(f: Any, bound: Any, shape: tuple[int, ...]) -> Any:
         return _shaped(np.clip(-np.log10(lost), 0.0, MOST_DIGITS), shape)
 
 
-def _condition(f: Any, x: Any, slope: Any) -> Any:
-    """|x/f df/dx|, a float for one point."""
-    with np.errstate(all="ignore"):
-        step = _step(np.asarray(x, float), np.asarray(slope))
-        found = np.where(step == 0.0, 0.0, step / np.abs(f))
-    return _shaped(np.where(np.isnan(f), np.nan, found), np.shape(f))
+def _condition(f: Any, step: Array, shape: tuple[int, ...]) -> Any:
+    """|x/f df/dx| from |x df/dx|, a float for one point."""
+    return _shaped(np.where(np.isnan(f), np.nan, np.where(step == 0.0, 0.0, step / np.abs(f))), shape)
 
 
 def _step(x: Array, slope: Array) -> Array:
@@ -196,9 +192,11 @@ def _under_loads(name: str, given: Mapping[str, Any], branch: int, threads: int 
         bound = bound + np.abs(partial[slope]) * forces[force][1]
     bound = bound.reshape(np.shape(found.value))
     value = values(name, given, branch, threads=threads)
-    moved = {p: _condition(value, numbers[p], slopes[slope]) for p, slope in totals.items()}
-    plain = float(bound) if np.ndim(value) == 0 else np.array(bound)
-    return Quality(value, {**found.conditions, **moved}, plain, _digits(value, bound, np.shape(value)))
+    shape = np.shape(value)
+    with np.errstate(all="ignore"):
+        steps = {p: _step(as_array(p, numbers[p], (p,), (name,)), slopes[of]) for p, of in totals.items()}
+        moved = {p: _condition(value, step, shape) for p, step in steps.items()}
+    return Quality(value, {**found.conditions, **moved}, _shaped(bound, shape), _digits(value, bound, shape))
 
 
 def _force_and_error(

@@ -34,7 +34,7 @@ from .kernels import (
     kernel_of,
     wide_margins_of,
 )
-from .threads import LEAST_BLOCK, in_blocks, least_of
+from .threads import HEAVY, LEAST_BLOCK, LEAST_LIGHT_BLOCK, LONGEST_BLOCK, run_parts
 
 MOST_KEPT = 256  # kernels that nobody else keeps
 AT_A_TIME = 2**20  # points that are answered again
@@ -138,7 +138,8 @@ def run_in_blocks(
 ) -> None:
     """Run the kernel of a key over its outermost axis in as many blocks as there are threads."""
     kernel = kernel_for(key)
-    least = LEAST_BLOCK if key.accuracy == "extended" else least_of(len(outs))
+    heavy = key.accuracy == "extended" or len(outs) >= HEAVY
+    least = LEAST_BLOCK if heavy else LEAST_LIGHT_BLOCK
     if outs[0].size < 2 * least:  # too few for a second thread
         _run(kernel, key, values, outs)
         return
@@ -148,7 +149,9 @@ def run_in_blocks(
         part = {name: v[start:stop] if name in outer else v for name, v in values.items()}
         _run(kernel, key, part, [out[start:stop] for out in outs])
 
-    in_blocks(block, outs[0].shape[0], outs[0].size, threads, least)
+    length = outs[0].shape[0]
+    row = outs[0].size // length  # points of one step along the axis
+    run_parts(block, length, threads, max(1, least // row), max(1, LONGEST_BLOCK // row))
 
 
 def have_wide_margins(form: Variant, ec: Any, AB: Any, BC: Any) -> bool:

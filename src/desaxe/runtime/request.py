@@ -192,16 +192,14 @@ def with_known_inputs(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def with_named_inputs(function: Callable[P, T]) -> Callable[P, T]:
-    """Decorate a function to have every input in its signature; `**inputs` keeps the caller's order."""
+    """Decorate a function of names to have every input in its signature; `**inputs` keeps their order."""
     with IMPORTS:
         from inspect import Parameter, signature
 
     given = signature(function)
-    own = [p for p in given.parameters.values() if p.kind is not Parameter.VAR_KEYWORD]
-    first = [p for p in own if p.kind is not Parameter.KEYWORD_ONLY]
-    named = [Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=Any) for name in INPUTS]
-    rest = [p for p in own if p.kind is Parameter.KEYWORD_ONLY]
-    function.__dict__["__signature__"] = given.replace(parameters=[*first, *named, *rest])
+    names, *options = [p for p in given.parameters.values() if p.kind is not Parameter.VAR_KEYWORD]
+    inputs = [Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=Any) for name in INPUTS]
+    function.__dict__["__signature__"] = given.replace(parameters=[names, *inputs, *options])
     return function
 
 

@@ -54,19 +54,6 @@ def _forget_pools() -> None:
 in_child(_forget_pools)
 
 
-def least_of(values: int) -> int:
-    """The least points of a block that is worth a thread, by the number of values of a point."""
-    return LEAST_LIGHT_BLOCK if values < HEAVY else LEAST_BLOCK
-
-
-def in_blocks(
-    block: Callable[[int, int], None], length: int, points: int, threads: int | None, least: int = LEAST_BLOCK
-) -> None:
-    """Call `block(start, stop)` for parts of an axis, on as many threads as its points justify."""
-    each = max(points // max(length, 1), 1)  # points of one step along the axis
-    run_parts(block, length, threads, max(1, least // each), max(1, LONGEST_BLOCK // each))
-
-
 def run_parts(
     part: Callable[[int, int], None], length: int, threads: int | None, least: int, longest: int
 ) -> None:
