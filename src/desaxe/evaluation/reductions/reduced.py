@@ -9,7 +9,7 @@ axis is cut, too; for others (std, percentiles) the axes that are reduced first 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from math import inf
+from math import inf, prod
 from typing import Any
 
 import numpy as np
@@ -38,7 +38,7 @@ FLOAT = np.dtype(np.float64)
 BLOCK = 2**16  # points whose values stay in the second-level cache
 PIECE = 2**20  # points behind a number that are in memory at once, where pieces combine
 NEAR = 1e-11  # of 1 + theta: more than what is rounded of the angle of a jump
-BLOCKS = 64  # of a part: an interrupt is heard after it
+LEAST, LONGEST = 2 * BLOCK, 64 * BLOCK  # points of a part: worth a thread; an interrupt is heard after it
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ class Reduced(Step):
                 if self._has_side(chain):
                     result[f"{variable}_side"] = self._side(name, field, values)
             later = tuple(range(len(self.dims), len(first.dims)))
-            points = np.prod([values[axis].size for axis in self.reductions.axes], dtype=np.int64)
+            points = prod(values[axis].size for axis in self.reductions.axes)
             result[f"{name}_skipped"] = np.asarray(points - first.points.sum(axis=later))
         return result
 
@@ -135,7 +135,8 @@ class Reduced(Step):
                 fields = {n: field_of(dims, a) for n, a in self.of.compute(block, 1).items()}
                 parts[k] = {key: folded(fields[key[0]], first, key[1], block) for key in kinds}
 
-        run_parts(part, len(regions), threads, 2, BLOCKS)
+        points = max([1, *(prod(one.stop - one.start for one in region.values()) for region in regions[:1])])
+        run_parts(part, len(regions), threads, max(1, LEAST // points), max(1, LONGEST // points))
         result = {key: _empty(rest, sizes, first if kind_of(key[1]).score else ()) for key in kinds}
         for place, group in groupby(range(len(regions)), lambda k: [regions[k][name] for name in rest]):
             pieces = [parts[k] for k in group]
@@ -150,7 +151,7 @@ class Reduced(Step):
         """
         first = {name: size for name, size in sizes.items() if name not in rest}
         pieces = longest(chunk_lengths("auto" if combines else -1, first, PIECE))
-        points = int(np.prod([min(pieces[name], max(size, 1)) for name, size in first.items()]))
+        points = prod(min(pieces[name], max(size, 1)) for name, size in first.items())
         others = chunk_lengths("auto", {name: sizes[name] for name in rest}, max(1, BLOCK // points))
         lengths = {**longest(others), **pieces}
         whole = {name: max(size, 1 if name in first else 0) for name, size in sizes.items()}
