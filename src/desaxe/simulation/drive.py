@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..loads.along_motion import OfMotion, SumOfLoads
-from ..loads.angles import crossings, zero_of
+from ..loads.angles import zero_of
 from ..loads.arguments import by_position
 from ..loads.function import FunctionOverTheta
 from ..loads.load import Load, OverTheta, OverY, TableOverTheta
@@ -25,7 +25,8 @@ from ..mechanism.messages import listed, named
 from ..support.checks import real_number
 from ..support.deadline import Deadline
 from ..support.shown import shown
-from .loops.state import CONSTANT, KLOSS, OVER_OMEGA, OVER_THETA
+from .loops.state import CONSTANT, KLOSS
+from .pieces import Sheet, meeting_angles, sheet_over_Y, table_sheet
 from .torque_derivative import TorqueDerivative
 
 Array = NDArray[np.float64]
@@ -56,9 +57,7 @@ class Curve(ABC):
 
     knots: tuple[float, ...] = ()  # speeds at which pieces meet
     depends_on_time = False
-    closed_form: tuple[float, ...] | None = (
-        None  # kind and coefficients for compiled loops (see `newton.piece`)
-    )
+    closed_form: tuple[float, ...] | None = None  # one piece for compiled loops (see `newton.piece`)
 
     @abstractmethod
     def at(self, t: Any, theta: Any, omega: Any) -> Any:
@@ -79,6 +78,10 @@ class Curve(ABC):
     def kinks(self, lengths: tuple[float, ...], branch: int) -> list[tuple[float, float]]:
         """The angles of one period at which pieces meet, and that period [rad]."""
         return []
+
+    def sheet(self, lengths: tuple[float, ...], branch: int, arc: tuple[float, float]) -> Sheet | None:
+        """All pieces for compiled loops; None where they have none. arc: its limit angles."""
+        return None
 
     def moves(self, theta: float) -> Mapping[str, float]:
         """By how much inputs move a kink at an angle, where that is not the design's to say."""
@@ -111,8 +114,6 @@ class MotorCurve(Curve):
         if isinstance(motor, Kloss):
             most, slip, speed, gear = map(float, self.numbers.values())
             self.closed_form = KLOSS, gear * copysign(most, speed), slip, speed, gear
-        elif isinstance(motor, OverOmega) and piece is not None:
-            self.closed_form = OVER_OMEGA, motor.table.origin(piece), *motor.table.rows[piece]
 
     def at(self, t: Any, theta: Any, omega: Any) -> Any:
         """The torque."""
@@ -126,6 +127,10 @@ class MotorCurve(Curve):
             table = self.motor.table
             value, slope = polynomial(table.rows[self.piece], omega - table.origin(self.piece))
         return Slopes(value, 0.0, slope)
+
+    def sheet(self, lengths: tuple[float, ...], branch: int, arc: tuple[float, float]) -> Sheet | None:
+        """The pieces of a table over the speed."""
+        return table_sheet(self.motor) if isinstance(self.motor, OverOmega) else None
 
     def ahead(self, theta: float, omega: float, direction: float, growing: float = 1.0) -> Curve:
         """The piece of the table above or below a speed."""
@@ -166,6 +171,10 @@ class AngleCurve(Curve):
             return BoundedCurve(load, low, nextafter(high, -inf))
         return self
 
+    def sheet(self, lengths: tuple[float, ...], branch: int, arc: tuple[float, float]) -> Sheet | None:
+        """The pieces of a table."""
+        return table_sheet(self.load) if isinstance(self.load, TableOverTheta) else None
+
     def kinks(self, lengths: tuple[float, ...], branch: int) -> list[tuple[float, float]]:
         """All knots of a table: a panel cannot resolve a function over one, however smooth it is there."""
         if isinstance(self.load, TableOverTheta):
@@ -178,7 +187,7 @@ class CubicCurve(Curve):
     """One cubic of a table over theta."""
 
     def __init__(self, row: Any, origin: float) -> None:
-        self.row, self.origin, self.closed_form = row, origin, (OVER_THETA, origin, *row)
+        self.row, self.origin = row, origin
 
     def at(self, t: Any, theta: Any, omega: Any) -> Any:
         """The cubic."""
@@ -218,11 +227,6 @@ class PositionCurve(Curve):
         self.design: SliderDesign | None = None
         self.zero = 0.0  # the position from which it is measured
 
-    @property
-    def turns_with_the_slider(self) -> bool:
-        """True where the load jumps when the slider turns round."""
-        return self.load.inward is not None
-
     def stand(self, design: SliderDesign, lengths: tuple[float, ...], branch: int) -> None:
         """Stand in a design; ValueError where it has not the dead centre that a load is measured from."""
         self.design, self.zero = design, _zero_in(self.load, lengths, branch)
@@ -255,12 +259,18 @@ class PositionCurve(Curve):
         found.design, found.zero = self.design, self.zero
         return found
 
+    def sheet(self, lengths: tuple[float, ...], branch: int, arc: tuple[float, float]) -> Sheet | None:
+        """The pieces between the angles at which they meet; between limit angles of their arc."""
+        _, AB, BC = lengths
+        if self.load.centre == "Y_inner" and AB > BC:
+            return None  # the slider passes the centre both ways
+        assert self.design is not None
+        sides, slider = [np.array([x]) for x in lengths], self.design.slider
+        return sheet_over_Y(self.load, sides, branch, np.array([arc]), lambda theta: slider(theta)[::2])
+
     def kinks(self, lengths: tuple[float, ...], branch: int) -> list[tuple[float, float]]:
         """The angles at the table's positions, and the dead centres where another table holds behind them."""
-        sides = [np.array([length]) for length in lengths]
-        angles = crossings(self.load, self.load.positions(smooth=True), sides, branch)[0]
-        if self.turns_with_the_slider:
-            angles = np.append(angles, dead_centres(sides))
+        angles = meeting_angles(self.load, [np.array([x]) for x in lengths], branch)[0]
         return [(angle, TURN) for angle in angles[np.isfinite(angles)].tolist()]
 
 

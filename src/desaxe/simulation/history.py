@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 from ..evaluation.evaluate import evaluate
 from .drive import LOADED, ConstantCurve, Curve
 from .events import Q, W
-from .law import state_of
-from .march import March
-from .model import Model
-from .panel import NODES, Panel, basis
+from .law import Law, state_of
+from .march import RESTING, March
+from .panel import NODES, basis
 from .residual import energy_residual, told_of
 from .result import FAILED, LIMIT, REST, Event, Simulation
 
@@ -66,8 +65,8 @@ def instants_of(times: Any, end: float) -> Array:
 def integrated(run: March, names: Sequence[str], times: Any, given: Mapping[str, Any]) -> Simulation:
     """The result of a motion by panels of time."""
     t = instants_of(times, run.t)
-    motion = Motion.of(run)
-    theta, omega, alpha = motion.histories(t)
+    motion = Motion(run)
+    theta, omega, alpha = motion.histories(t, run.laws)
     curves = () if "sliders" in given else zip(FORCES, run.model.drive[1:], strict=True)
     loads = {name: _along(curve, t, theta, omega) for name, curve in curves}
     residual = energy_residual(run)
@@ -78,43 +77,31 @@ def integrated(run: March, names: Sequence[str], times: Any, given: Mapping[str,
 class Motion:
     """The record of a motion: enough to compute the state at any instant, and to be pickled."""
 
-    def __init__(
-        self, model: Model, panels: Sequence[Panel], events: list[Event], status: int, t: float
-    ) -> None:
-        self.model, self.events, self.status, self.t = model, events, status, t
-        self.start, self.h, self.stop = (
-            np.array([getattr(panel, name) for panel in panels]) for name in ("start", "h", "stop")
-        )
-        self.y = np.array([panel.y for panel in panels])
-        self.series = np.array([panel.series for panel in panels])
-        self.laws = [panel.law for panel in panels]
-
-    @classmethod
-    def of(cls, run: March) -> "Motion":
-        """The record of a run."""
-        return cls(run.model, run.panels, run.events, run.status, run.t)
-
-    def __getstate__(self) -> dict[str, Any]:
-        """A pickle has no laws, which may be any functions."""
-        return {**self.__dict__, "laws": []}
+    def __init__(self, run: March) -> None:
+        self.model, self.events, self.status, self.t, self.record = (
+            run.model, run.events, run.status, run.t, run.record,
+        )  # fmt: skip
+        heads = self.record.heads
+        self.start, self.h, self.stop = heads[:, 0], heads[:, 1], heads[:, 6]
 
     def at(self, t: Array) -> tuple[NDArray[np.intp], Array]:
         """The panels of instants, and q, v and W there."""
         which = np.searchsorted(self.stop[:-1], t)
         s = (t - self.start[which]) / np.where(self.h[which] > 0.0, self.h[which], 1.0)
         rows = basis(2.0 * s - 1.0, NODES)
-        moved = np.einsum("kt,tik->it", rows, self.series[which]) * (s != 0.0)
-        return which, self.y[which].T + moved
+        moved = np.einsum("kt,tik->it", rows, self.record.series[which]) * (s != 0.0)
+        return which, self.record.y[which].T + moved
 
-    def histories(self, t: Array) -> tuple[Array, Array, Array]:
-        """Angle, speed and acceleration at instants."""
+    def histories(self, t: Array, laws: Sequence[Law]) -> tuple[Array, Array, Array]:
+        """Angle, speed and acceleration at instants; laws: of each stretch."""
         theta, omega = self.states(t)
-        which, alpha = np.searchsorted(self.stop[:-1], t), np.empty(t.shape)
-        changes = [0, *(k for k in range(1, len(self.laws)) if self.laws[k] is not self.laws[k - 1])]
-        stretch = np.searchsorted(changes, which, side="right") - 1
-        for number in np.unique(stretch).tolist():
-            rows = np.flatnonzero(stretch == number)
-            alpha[rows] = self.laws[changes[number]].alpha(t[rows], theta[rows], omega[rows])
+        which, ends = np.searchsorted(self.stop[:-1], t), self.record.ends
+        law = Law(self.model, self.model.drive, *ends[which, 2:].T)
+        alpha = np.where(ends[which, 0] == RESTING, 0.0, law.alpha(t, theta, omega))
+        stretch = self.record.stretches[which]
+        met = np.flatnonzero((t == self.start[which]) | (t == self.stop[which]))  # pieces may meet there
+        for k in met.tolist():
+            alpha[k] = laws[stretch[k]].alpha(t[k], theta[k], omega[k])
         if self._at_event:
             _set_end(self, t, alpha)
         return theta, omega, alpha

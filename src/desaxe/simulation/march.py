@@ -1,49 +1,53 @@
-"""The motion of one design, panel by panel: cut at every kink, at rest while friction holds the crank."""
+"""The motion of one design: compiled loops make its panels up to each cut, here it rests, fails and ends."""
 
+from collections.abc import Callable
 from contextlib import suppress
+from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
+from functools import cached_property
 from math import copysign, inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiler.llvm.loops import address
 from ..mechanism.messages import named
 from ..support.deadline import Deadline
-from .collocation import BRIEF, Collocation, PanelLimits
 from .drive import FunctionCurve
 from .events import (
-    JAMMED,
-    KINK,
-    LOST,
+    JAM,
     NEVER,
     STANDSTILL,
-    Crossing,
     Mark,
     Q,
     V,
     angle_of,
-    events_along,
-    events_in,
     failure,
     marks_of,
+    passages,
     time_of,
     words_of,
 )
-from .law import Contact, Law, Resting, State, law_ahead, rubbing, state_of
+from .law import Law, Resting, State, law_ahead, state_of
+from .loops import march, newton, panels, state
+from .loops.compiled import panels as compiled_panels
+from .loops.cuts import JAMMED, KINK, LIMIT, NO_CUT
+from .loops.cuts import STANDSTILL as STILL
 from .loops.motions import BESIDE, CROWD, NARROW
-from .loops.newton import DEVIATES, TAIL
 from .model import Model
-from .panel import ENDS, NODES, SERIES, Panel, basis, resting
+from .panel import NODES, TABLE, Panel, basis
 from .result import DONE, FAILED, JAMS, REST, Event
 
 Array = NDArray[np.float64]
-SAME = 1e-9  # of a panel: events so close together are one instant
-AT_LIMIT = 1e-9  # rad: so near to a limit a load on a massless slider has grown without bound
-EXACT = 0.02  # tolerances: a panel whose inside is so exact need not be solved again up to a cut
+NEXT_TO = 1e-9  # rad: so near to a limit a load on a massless slider has grown without bound
 PROBES = 2000  # instants of a motion at which loads that depend on time are compared with the panels
 SHARP = 3e-11  # of a radian: a limit angle cannot be told better
 CHATTER = 6  # standstills in a row, all within a millionth of the time
 FLOOR = 0.01  # of the root of the energy that start and loads suggest: the least size of v
+BRIEF = 64  # panels of a call, which neither an interrupt nor a deadline stops
+RESTING = -1.0  # in place of a cut: nothing moves
+HEAD = 7  # numbers of a panel (see `loops.panels`)
+_CALLED = CFUNCTYPE(c_int64, c_int64, c_int64, c_int64)
 
 
 class Settings(NamedTuple):
@@ -51,6 +55,27 @@ class Settings(NamedTuple):
 
     rtol: float
     max_steps: int
+
+
+class Record(NamedTuple):
+    """Panels one after the other: heads, series, rates at nodes and ends of `loops.march`, q, v, W at the end."""
+
+    heads: Array
+    series: Array
+    rates: Array
+    ends: Array
+    last: Array
+
+    @property
+    def y(self) -> Array:
+        """q, v and W at the starts."""
+        return self.heads[:, 3:6]
+
+    @property
+    def stretches(self) -> NDArray[np.intp]:
+        """The number of the stretch of each panel: one law holds on it."""
+        new = (self.ends[:-1, 0] != NO_CUT) | (self.ends[1:, 0] == RESTING)
+        return np.concatenate([[0], np.cumsum(new)])
 
 
 class March:
@@ -66,41 +91,51 @@ class March:
         deadline: Deadline,
     ) -> None:
         self.model, self.t_end, self.settings, self.deadline = model, t_end, settings, deadline
-        self.t, self.y = 0.0, y
-        self.status = NEVER
-        self.message = ""
-        self.panels: list[Panel] = []
+        self.y, self.status, self.message = y, NEVER, ""
         self.events: list[Event] = []
-        self.left = self.state.theta  # an angle that the motion starts from is not reached again
-        self.h = 0.0  # the length that the last panel suggests
-        self.steps = 0
-        self.top = 0.0  # the largest |v| so far
-        self.pressed: float | None = None  # the side of the guide after a change of side
+        self.steps, self.stills = 0, list[float]()
         self.marks = marks_of(model, until)
-        kinks = [(mark.angle, mark.every or inf) for mark in self.marks if self._ends_stretch(mark)]
-        self.kinks = np.array(kinks or np.empty((0, 2)))
-        self.timed = any(curve.depends_on_time for curve in model.drive)
-        self.by_functions = any(isinstance(curve, FunctionCurve) for curve in model.drive)
-        limits = PanelLimits(t_end, settings.rtol, SHARP, self.kinks, np.array(model.drive.knots, np.float64))
-        self.collocation = Collocation(limits, BRIEF)
+        cuts = [mark for mark in self.marks if mark.cuts or (model.mu and mark.kind == "dead centre")]
+        self.kinks = np.array([(m.angle, m.every or inf, m.status) for m in cuts] or np.empty((0, 3)), float)
+        self.cutting = cuts
+        self.error: BaseException | None = None
+        self.stops = False
+        self.clock = np.zeros(7)
+        self.clock[[panels.T_END, panels.SHARP, panels.LEFT]] = t_end, SHARP, 1.0
+        self._law: Law = Law(model, model.drive, 1.0)
+        self._kept: list[tuple[Array, ...]] = []
+        self.numbers, self.sheets, self.data, self._callbacks = self._in_numbers()
+        self.rows, self.matrix = np.zeros((newton.ROWS, NODES)), np.empty((2 * NODES, 2 * NODES))
+
+    @property
+    def t(self) -> float:
+        """The current instant."""
+        return float(self.clock[panels.T])
+
+    @property
+    def state(self) -> State:
+        """The current state of the crank."""
+        return state_of(self.model, float(self.y[Q]), float(self.y[V]))
 
     def to_the_end(self) -> "March":
         """Run until the end time, or what comes before it."""
         try:
-            self.top = FLOOR * sqrt(self._energy())
-            if self.top == inf:
-                self._fail(None, "the energy of the start is beyond every double")
+            self.scales = np.array([self.settings.rtol, FLOOR * sqrt(self._energy()), 0.0])
+            if self.scales[1] == inf:
+                self._fail("the energy of the start is beyond every double")
             while self.status == NEVER:
-                law = self._law()
-                if law is not None:
-                    self._follow(law)
+                self._go_on()
         except TimeoutError:  # of a load, or of the search for events
             if not self.deadline.over:
                 raise
-            self._late()
+            reason = f"not done within timeout = {self.deadline.seconds:g} s, after {self.steps} steps"
+            self.deadline.lift()
+            self._fail(reason)
         self.deadline.lift()
-        if not self.panels:  # stopped where it started
+        if not self._kept:  # stopped where it started
             self._keep_still(0.0)
+        passed = passages(self.model, self.marks, self.record)
+        self.events = sorted([*passed, *self.events], key=lambda event: event.t)
         return self
 
     def _energy(self) -> float:
@@ -119,95 +154,133 @@ class March:
         largest = max(float(size) for size in sizes if size == size)
         return largest or float(still.inertia) / self.t_end**2
 
-    def _late(self) -> None:
-        reason = f"not done within timeout = {self.deadline.seconds:g} s, after {self.steps} steps"
-        self.deadline.lift()
-        self._fail(None, reason)
+    # ---- panels -----------------------------------------------------------------------------
+
+    def _go_on(self) -> None:
+        """Some panels, and what comes after them."""
+        self.deadline.check()
+        left = self.settings.max_steps - self.steps
+        if left <= 0:
+            self._fail(f"more than {self.settings.max_steps} steps")
+            return
+        most = min(left, BRIEF) + 1
+        heads, records, count = np.zeros((most, HEAD)), np.empty((most, 3, NODES + 1)), np.zeros(1)
+        rates, ends = np.empty((most, 7, NODES)), np.empty((most, 5))
+        if self._kept and self._kept[-1][3][-1, 0] != RESTING:
+            count[0], heads[0], records[0] = 1.0, self._kept[-1][0][-1], self._kept[-1][1][-1]
+        self.error = None
+        knots = np.array(self.model.drive.knots, np.float64)
+        known = self.kinks, knots, self.sheets, self.numbers, self.data, TABLE, self.rows, self.matrix
+        code = compiled_panels()(self.y, self.clock, self.scales, *known, heads, records, rates, ends, count)
+        made = slice(1, 1 + int(count[0]))
+        self.steps += made.stop - 1
+        if made.stop > 1:
+            self._kept.append((heads[made], records[made], rates[made], ends[made]))
+        if self.error is not None and (self.stops or code in (panels.FAILED, panels.STOPPED)):
+            raise self.error
+        self._after(code)
+
+    def _after(self, code: int) -> None:
+        """What comes after panels."""
+        if code == panels.FAILED:
+            self._fail("no panel of time resolves it, however short")
+        elif code == march.RESTS:
+            self._rest()
+        elif code in (march.NO_BALANCE, march.TWO_BALANCES):
+            self._jam(0 if code == march.NO_BALANCE else 2)
+        elif code == march.CUT:
+            self._cut(*self._kept[-1][3][-1, :2])
+        elif self.t >= self.t_end:
+            self.stop(DONE, "reached t_end = " + time_of(self.t_end))
+        elif self.numbers[state.KERNEL] == 0.0 or self.numbers[state.TORQUE] == state.FUNCTION:
+            self._slides()
+
+    def _cut(self, kind: float, row: float) -> None:
+        """What comes after a panel that is cut."""
+        if kind == STILL:
+            self.tell(STANDSTILL, self.state._replace(omega=0.0))
+            self.stills = [t for t in self.stills[1 - CHATTER :] if self.t - t < 1e-6 * self.t_end] + [self.t]
+            if len(self.stills) == CHATTER:
+                self._chatters()
+        elif kind == JAMMED:
+            self._jam(0 if row > 0.0 else 2)
+        elif kind == LIMIT:
+            limits = [mark for mark in self.marks if mark.kind == "limit"]
+            self._end_at(limits[int(row)])
+        elif kind == KINK:
+            self._end_at(self.cutting[int(row)])
+
+    def _end_at(self, mark: Mark) -> None:
+        limit = mark.kind == "limit"
+        omega = 0.0 if limit and self.model.coordinate.half else self.state.omega
+        theta = self.state.theta if mark.every else mark.angle
+        self.tell(mark.kind, State(theta, omega), "" if limit else mark.which)
+        self.stop(mark.status, words_of(mark, self.t))
 
     def stop(self, status: int, message: str) -> None:
         """End the motion."""
         self.status, self.message = status, message
 
-    def tell(self, kind: str, state: State, which: str = "") -> None:
+    def tell(self, kind: str, now: State, which: str = "") -> None:
         """Record an event at the current instant."""
-        self.events.append(Event(kind, self.t, state.theta, state.omega, which))
+        self.events.append(Event(kind, self.t, now.theta, now.omega, which))
+
+    @cached_property
+    def record(self) -> Record:
+        """All panels of the motion, which has ended."""
+        return Record(*map(np.concatenate, zip(*self._kept, strict=True)), self.y)
+
+    @cached_property
+    def laws(self) -> list[Law]:
+        """The law of each stretch, with the pieces that hold in its middle."""
+        record, laws = self.record, []
+        first = np.flatnonzero(np.diff(record.stretches, prepend=-1))
+        start, h, stop = record.heads[first][:, [0, 1, 6]].T
+        x = (stop - start) / np.where(h > 0.0, h, 1.0) - 1.0  # of the middle
+        middles = np.einsum("kij,jk->ki", record.series[first], basis(x, NODES))
+        for k, moved in zip(first.tolist(), middles, strict=True):
+            q, v, _ = record.y[k] + moved
+            direction, side, pressed = record.ends[k, 2:].tolist()
+            if record.ends[k, 0] == RESTING:
+                laws.append(Resting(self.model, self.model.drive))
+                continue
+            theta, omega = state_of(self.model, float(q), float(v))
+            drive = self.model.drive.ahead(theta, omega, direction)
+            laws.append(Law(self.model, drive, direction, side, pressed))
+        return laws
 
     @property
-    def state(self) -> State:
-        """The current state of the crank."""
-        return state_of(self.model, float(self.y[Q]), float(self.y[V]))
+    def panels(self) -> list[Panel]:
+        """The panels of the motion, which has ended."""
+        record, laws = self.record, self.laws
+        rows = zip(record.stretches.tolist(), record.heads.tolist(), record.y, record.series, record.rates, strict=True)
+        return [Panel(laws[n], head[0], head[1], y, series, head[6], rates) for n, head, y, series, rates in rows]
 
-    # ---- which law holds ----------------------------------------------------------------------
+    @property
+    def law_at_end(self) -> Law:
+        """The law of the last panel."""
+        direction, side, pressed = self.numbers[[state.DIRECTION, state.SIDE, state.PRESSED]].tolist()
+        drive = self.model.drive.ahead(*self.state, direction)
+        return Law(self.model, drive, direction, side, pressed)
 
-    def _law(self) -> Law | None:
-        """The law from here on; None where the motion has been stopped, or waits."""
-        theta, omega = self.state
-        if self.model.mu == 0.0:
-            directions = [copysign(1.0, omega)] if self.y[V] else [1.0, -1.0]
-            for direction in directions:
-                law = law_ahead(self.model, self.t, theta, omega, direction)
-                if omega or direction * law.alpha(self.t, theta, 0.0) >= 0.0:
-                    return law
-            return self._from_rest()  # loads oppose either way
-        if self.y[V] == 0.0:
-            return self._from_rest()
-        law = law_ahead(self.model, self.t, theta, omega, copysign(1.0, omega))
-        return self._rubbing(law, law.contact(self.t, theta, omega))
-
-    def _rubbing(self, law: Law, here: Contact) -> Law | None:
-        """The law with friction, if exactly one set of forces balances."""
-        pressed, self.pressed = self.pressed or float(here.pressed), None
-        if abs(here.normal_free) <= here.noise:
-            pressed = self._pressed_soon(law, pressed)
-        if here.solutions != 1:
-            self._jam(int(here.solutions))
-            return None
-        return rubbing(law, pressed)
-
-    def _pressed_soon(self, law: Law, now: float) -> float:
-        """The sign of the normal force just after it has vanished, from the motion as it is."""
-        ahead = min(1e-6 * self.t_end, self.h or inf)
-        t, y = np.array([self.t]), self.y
-        rates = rubbing(law, now).rates(t, y[Q : Q + 1], y[V : V + 1])
-        q, v = y[Q] + ahead * float(rates.q[0]), y[V] + ahead * float(rates.v[0])
-        soon = law.contact(self.t + ahead, *state_of(self.model, q, v))
-        return float(soon.pressed) if abs(soon.normal_free) > soon.noise else now
+    # ---- the end ------------------------------------------------------------------------------
 
     def _jam(self, solutions: int) -> None:
-        state = self.state
+        now = self.state
         which = "no forces balance" if solutions == 0 else "two sets of forces balance"
-        self.tell(JAMMED.kind, state, which)
-        where = "at t = " + time_of(self.t) + ", theta = " + angle_of(state.theta)
+        self.tell(JAM, now, which)
+        where = "at t = " + time_of(self.t) + ", theta = " + angle_of(now.theta)
         self.stop(JAMS, "the friction jams " + where + f": {which}")
 
-    # ---- at rest --------------------------------------------------------------------------------
-
-    def _from_rest(self) -> Law | None:
-        """Start if the torque can move the crank, else wait for it."""
-        theta = self.state.theta
-        laws = []
-        for direction in (1.0, -1.0):
-            law = law_ahead(self.model, self.t, theta, 0.0, direction)
-            here = law.contact(self.t, theta, 0.0)
-            if here.starts(direction):
-                laws.append((law, here))
-        if len(laws) == 2:
-            self._jam(2)
-            return None
-        if laws:
-            return self._rubbing(*laws[0])
-        self._rest(theta)
-        return None
-
-    def _rest(self, theta: float) -> None:
+    def _rest(self) -> None:
         """Wait for the torque or load to break the crank away."""
-        start, self.h = self.t, 0.0
+        start, self.clock[panels.WISH] = self.t, 0.0
         if self.model.drive.steady:
             why = " on: the torque cannot move the crank there"
             self.stop(REST, "at rest from t = " + time_of(start) + why)
             return
-        moves = self._breaks_away(theta)
-        self.t = self.t_end if moves is None else moves
+        moves = self._breaks_away(self.state.theta)
+        self.clock[panels.T] = self.t_end if moves is None else moves
         self._keep_still(start)
         if moves is None:
             rest = ", at rest from t = " + time_of(start) + " on"
@@ -236,236 +309,161 @@ class March:
         return float(b)
 
     def _keep_still(self, start: float) -> None:
-        law = Resting(self.model, self.model.drive)
-        self.panels.append(resting(law, start, self.t, self.y))
+        """A panel in which nothing moves."""
+        head = np.array([[start, self.t - start, 0.0, *self.y, self.t]])
+        ends = np.array([[RESTING, 0.0, 0.0, 0.0, 0.0]])
+        self._kept.append((head, np.zeros((1, 3, NODES + 1)), np.zeros((1, 7, NODES)), ends))
 
-    # ---- in motion ----------------------------------------------------------------------------
-
-    def _follow(self, law: Law) -> None:
-        """Follow a law to the next kink, or the end."""
-        while self.t < self.t_end:
-            left = self.settings.max_steps - self.steps
-            if left <= 0:
-                self._fail(law, f"more than {self.settings.max_steps} steps")
-                return
-            panels = self._panels(law, left)
-            if not panels:
-                self._fail(law, "no panel of time resolves it, however short")
-                return
-            self.steps += len(panels)
-            self._accept_calm(panels[:-1])
-            if self._meet_all(panels[-1]):
-                return
-            self._accept(panels[-1], panels[-1].end())
-            self.left = inf
-            if self.by_functions and self._slides(law):
-                return
-        self.stop(DONE, "reached t_end = " + time_of(self.t_end))
-
-    def _accept_calm(self, panels: list[Panel]) -> None:
-        """Accept panels that nothing cuts, with the events on them."""
-        if not panels:
-            return
-        for found, y in events_along(panels, self.model, self.marks, self.left):
-            self._tell_of(found, state_of(self.model, float(y[Q]), float(y[V])))
-        self.panels += panels[:-1]
-        self.top = max(self.top, *(abs(float(panel.y[V])) for panel in panels))
-        self._accept(panels[-1], panels[-1].end())
-        self.left = inf
-
-    def _panels(self, law: Law, most: int) -> list[Panel]:
-        """The next panels, of which only the last may be cut; none where the tolerance allows none."""
-        before = self.panels[-1] if self.panels and not self.panels[-1].law.rests else None
-        while True:
-            self.deadline.check()
-            panels, self.h = self.collocation.advance(law, self.t, self.y, self.h, self.top, before, most)
-            good, shorter = self._resolved(panels)
-            self.h = shorter or self.h
-            if good or shorter is None:
-                return panels[:good]
-
-    def _resolved(self, panels: list[Panel]) -> tuple[int, float | None]:
-        """Count the panels before one whose nodes have missed something; a shorter length for that one."""
-        for k, panel in enumerate(panels if self.timed else ()):
-            shorter = self._missed(panel)
-            if shorter is not None:
-                return k, shorter
-        bad = self._before_jump(panels) if self.by_functions and panels else None
-        return (len(panels), None) if bad is None else (bad, 0.5 * panels[bad].h)
-
-    def _before_jump(self, panels: list[Panel]) -> int | None:
-        """Count the panels before the first with a jump next to an end, unseen by nodes; None without."""
-        law, starts = panels[0].law, np.array([panel.y for panel in panels])
-        ends = np.array([panel.end() for panel in panels])
-        times = np.array([(panel.start, panel.start + panel.h) for panel in panels])
-        nodes = np.array([panel.rates.v for panel in panels if panel.rates is not None])
-        y = np.concatenate([starts, ends])
-        actual = law.rates(times.T.reshape(-1), y[:, Q], y[:, V]).v.reshape(2, -1)
-        off = np.diff(times, axis=1).T * np.abs(actual - ENDS @ nodes.T)
-        size = np.maximum(self.top, np.abs(y[:, V]).reshape(2, -1).max(axis=0))
-        bad = np.flatnonzero((off > DEVIATES * TAIL * self.settings.rtol * size).any(axis=0))
-        return int(bad[0]) if bad.size else None
-
-    def _missed(self, panel: Panel) -> float | None:
-        """A shorter length for a panel whose nodes have missed what a load does in time; None for none."""
-        every = self.t_end / PROBES
-        first, last = int(panel.start / every) + 1, int(panel.stop / every)
-        probes = np.arange(first, last + 1) * every
-        t: NDArray[Any] = probes[(probes > panel.start) & (probes < panel.start + panel.h)]
-        if not t.size or panel.rates is None:
-            return None
-        y = panel.state(t)
-        rates = panel.law.rates(t, y[Q], y[V])
-        s = 2.0 * (t - panel.start) / panel.h - 1.0
-        series = (SERIES @ panel.rates.v) @ basis(s, NODES - 1)
-        size = max(self.top, float(np.abs(y[V]).max()))
-        bad = np.flatnonzero(panel.h * np.abs(rates.v - series) > DEVIATES * TAIL * self.settings.rtol * size)
-        if not bad.size:
-            return None
-        return max(float(t[bad[0]]) - panel.start - every, 0.5 * (float(t[bad[0]]) - panel.start))
-
-    def _accept(self, panel: Panel, y: Array) -> None:
-        self.panels.append(panel)
-        self.t, self.y = panel.stop, y
-        self.top = max(self.top, abs(float(y[V])))
-
-    def _fail(self, law: Law | None, reason: str) -> None:
-        state = self.state
-        if law is not None and law.rubs:
-            here = law.contact(self.t, *state)
+    def _fail(self, reason: str) -> None:
+        now, law = self.state, self.law_at_end
+        if law.rubs and law.side:
+            here = law.contact(self.t, *now)
             if here.solutions != 1 or 1.0 - law.pressed * here.wedge < 1e-3:
                 self._jam(0)
                 return
         for mark in self.marks:
-            if mark.kind == "limit" and abs(mark.angle - state.theta) < AT_LIMIT:
-                self._tell_end(Crossing(self.t, mark, Q, float(self.y[Q])))
+            if mark.kind == "limit" and abs(mark.angle - now.theta) < NEXT_TO:
+                self._end_at(mark)
                 return
-        if law is not None and self._chatters(law, state):
-            return
-        self.stop(FAILED, failure(self.t, state.theta, state.omega, reason))
+        if not self._chatters():
+            self.stop(FAILED, failure(self.t, now.theta, now.omega, reason))
 
-    def _stalls(self, law: Law) -> bool:
-        """True if the crank has only turned round and round again, and chatters."""
-        last = self.events[-CHATTER:]
-        short = len(last) == CHATTER and last[-1].t - last[0].t < 1e-6 * self.t_end
-        turned = short and all(event.kind == STANDSTILL.kind for event in last)
-        return turned and self._chatters(law, self.state)
-
-    def _chatters(self, law: Law, state: State) -> bool:
+    def _chatters(self) -> bool:
         """True if a torque that jumps with the sign of the speed holds the crank at standstill."""
-        small = 1e-6 * self.top / sqrt(self.model.inertia(state.theta))
-        if not abs(state.omega) <= small:
+        now, law = self.state, self.law_at_end
+        small = 1e-6 * self.scales[1] / sqrt(self.model.inertia(now.theta))
+        if not abs(now.omega) <= small:
             return False
-        above, below = (law.alpha(self.t, state.theta, omega) for omega in (small, -small))
+        above, below = (law.alpha(self.t, now.theta, omega) for omega in (small, -small))
         if not above < 0.0 < below:
             return False
         why = " on: torque or load jumps where omega changes its sign; let it change over a range of omega"
         self.stop(FAILED, "the crank chatters at standstill from t = " + time_of(self.t) + why)
         return True
 
-    def _slides(self, law: Law) -> bool:
-        """True if a torque that jumps at a speed drives the crank back to it from either side."""
-        last, (theta, omega) = self.panels[-CROWD:], self.state
-        if len(last) < CROWD or abs(float(self.y[Q] - last[0].y[Q])) > NARROW:
-            return False
+    def _slides(self) -> None:
+        """End the motion if a torque that jumps at a speed drives the crank back to it from either side."""
+        last, (theta, omega), law = self._kept[-1][0], self.state, self.law_at_end
+        if len(last) < CROWD or abs(float(self.y[Q] - last[0, 3])) > NARROW:
+            return
         low, high = omega - BESIDE * abs(omega), omega + BESIDE * abs(omega)
         below, above = (float(law.alpha(self.t, theta, speed)) for speed in (low, high))
         if not above < 0.0 < below:
-            return False
+            return
         while low < (middle := 0.5 * (low + high)) < high:
             low, high = (middle, high) if law.alpha(self.t, theta, middle) >= 0.0 else (low, middle)
         if law.alpha(self.t, theta, low) - law.alpha(self.t, theta, high) < 0.5 * (below - above):
-            return False  # it is steep there, without a jump
+            return  # it is steep there, without a jump
         across = " on: torque or load jumps back and forth across " + named("omega", high, ".6g")
         remedy = "; let it change over a range of omega"
         self.stop(FAILED, "the crank chatters from t = " + time_of(self.t) + across + remedy)
-        return True
 
-    # ---- events ---------------------------------------------------------------------------------
+    # ---- the law as numbers -------------------------------------------------------------------
 
-    def _meet_all(self, panel: Panel) -> bool:
-        """Record the events of a panel; return True if one of them cuts the motion."""
-        found = events_in(panel, self.model, self.marks, self.left, self.deadline.check)
-        events = [event for event in found if event.t <= self.t_end]
-        place = 0
-        while place < len(events):
-            last = events[place].t + SAME * panel.h
-            start = place
-            while place < len(events) and events[place].t <= last:
-                place += 1
-            now = events[start:place]
-            if panel.law.rubs or any(self._ends_stretch(event.mark) for event in now):
-                self._cut_at(now, panel)
-                return True
-            for event in now:
-                self._note(event, panel)
-        return self._stalls(panel.law)
+    def _in_numbers(self) -> tuple[Array, Array, Array, list[Any]]:
+        """The numbers of the law, the pieces of its loads, the kernel's inputs, and what must live with them."""
+        numbers, model, drive = np.zeros(state.NUMBERS), self.model, self.model.drive
+        numbers[state.HALF : state.TORQUE] = model.coordinate.half, model.coordinate.first, model.coordinate.last
+        callbacks = [self._guarded(self._answer), self._guarded(self._choose)]
+        numbers[state.RUBS], numbers[state.ANSWER] = model.mu != 0.0, _address(callbacks[0])
+        numbers[state.LEANS], numbers[state.MU], numbers[state.TINY] = model.branch, model.mu, 1e-9 * model.values["AB"]
+        if any(curve.depends_on_time for curve in drive):
+            numbers[state.PROBE] = self.t_end / PROBES
+        closed, sheets = True, [np.empty((0, 1 + 2 * state.SLOTS))]
+        for k, curve in enumerate((drive.torque, drive.F_Y, drive.F_X)):
+            form, first = curve.closed_form, state.TORQUE + k * state.SLOTS
+            sheet = None if form else curve.sheet(model.lengths, model.branch, model.coordinate[:2])
+            if k == 0 and isinstance(curve, FunctionCurve) and not curve.follows_the_slider:
+                callbacks.append(self._guarded(_torques(curve)))
+                form = state.FUNCTION, _address(callbacks[-1])
+            if sheet:
+                numbers[state.SHEETS + 3 * k : state.SHEETS + 3 * k + 3] = (
+                    sum(map(len, sheets)), sheet.rows.shape[1], sheet.period,
+                )  # fmt: skip
+                sheets.append(sheet.rows[0])
+            elif form:
+                numbers[first : first + len(form)] = form
+            else:
+                closed = False
+        data = np.zeros(1)
+        if closed:
+            kernel, data = model.kernel
+            numbers[state.KERNEL] = kernel.code.address
+            if model.mu:
+                guide, inputs = model.guide_kernel
+                numbers[state.CONTACT : state.DRAG] = guide.code.address, address(inputs)
+        else:
+            numbers[state.CHOOSE] = _address(callbacks[1])
+        return numbers, np.concatenate(sheets), data, callbacks
 
-    def _ends_stretch(self, mark: Mark) -> bool:
-        """True where the motion ends, a load has a kink, or turns round with the slider."""
-        turns = any(getattr(curve, "turns_with_the_slider", False) for curve in self.model.drive)
-        cuts = mark.status != NEVER or mark.kind == KINK or (mark is STANDSTILL and turns)
-        return cuts or (self.model.mu != 0.0 and mark.kind == "dead centre")
+    def _guarded(self, work: Callable[[int, int, int], None]) -> Any:
+        """A function for the loops; they go on after an error of a load, and stop after all others."""
 
-    def _note(self, found: Crossing, panel: Panel) -> None:
-        """Record an event that does not cut the motion."""
-        y = panel.state(found.t)
-        self._tell_of(found, state_of(self.model, float(y[Q]), float(y[V])))
+        def guarded(first: int, second: int, third: int) -> int:
+            if self.stops:
+                return newton.STOP
+            try:
+                work(first, second, third)
+            except (ValueError, ArithmeticError) as raised:  # a load has no value: the panel may be shorter
+                self.error = raised
+                return newton.NONE
+            except BaseException as raised:
+                self.error, self.stops = raised, True
+                return newton.STOP
+            self.error = None
+            return 0
 
-    def _tell_of(self, found: Crossing, state: State) -> None:
-        """Record an event with its exact angle, or with exactly zero speed."""
-        mark = found.mark
-        if mark.kind == KINK:
-            return
-        theta = float(self.model.coordinate.theta(found.value)) if found.place == Q else state.theta
-        theta = mark.angle if mark.kind in ("limit", "angle") else theta
-        omega = 0.0 if mark is STANDSTILL else state.omega
-        which = "" if mark.kind == "limit" else mark.which
-        self.events.append(Event(mark.kind, float(found.t), theta, omega, which))
+        return _CALLED(guarded)
 
-    def _cut_at(self, now: list[Crossing], panel: Panel) -> None:
-        """End this stretch at events of one instant: what ends the motion leads, then an angle."""
-        leader = min(now, key=lambda event: (event.mark.status == NEVER, event.place < 0))
-        panel, y = self._cut(leader, panel)
-        for other in now:
-            if other is not leader and other.mark is not LOST:
-                self._note(other, panel)
-        law = panel.law
-        self._accept(panel, y)
-        at_angle = leader.place == Q
-        self.left = float(self.model.coordinate.theta(leader.value)) if at_angle else inf
-        if law.rubs and any(event.mark is LOST for event in now):
-            self.pressed = -law.pressed
-        if leader.mark is JAMMED:
-            here = law.contact(self.t, *self.state)
-            self._jam(0 if here.wedge * law.pressed > 0.0 else 2)
-        elif leader.mark is not LOST:
-            self._tell_end(leader._replace(t=self.t))
+    def _choose(self, choice: int, _: int, __: int) -> None:
+        """Choose the pieces of loads that compiled loops do not know."""
+        t, theta, omega, direction, growing = _memory(choice, 5).tolist()
+        self._law = Law(self.model, self.model.drive.ahead(theta, omega, direction, growing))
 
-    def _tell_end(self, found: Crossing) -> None:
-        """Record the event at which a stretch ends, and stop if the motion ends with it."""
-        mark = found.mark
-        limit = mark.kind == "limit"
-        self._tell_of(found, State(mark.angle, self._speed_at_limit()) if limit else self.state)
-        if mark.status != NEVER:
-            self.stop(mark.status, words_of(mark, found.t))
+    def _answer(self, state_at: int, rows_at: int, slopes: int) -> None:
+        """The law at the nodes, where the loops have no closed form."""
+        q, v = _memory(state_at, 2 * NODES).reshape(2, NODES)
+        rows = _memory(rows_at, newton.ROWS * NODES).reshape(newton.ROWS, NODES)
+        direction, side, pressed = self.numbers[[state.DIRECTION, state.SIDE, state.PRESSED]].tolist()
+        drive, times = self._law.drive, rows[newton.TIME]
+        if self.numbers[state.KERNEL]:
+            now = state_of(self.model, float(q[0]), float(v[0]))
+            drive = self.model.drive.ahead(*now, direction or 1.0, copysign(1.0, v[-1] - v[0]))
+        law = Law(self.model, drive, direction, side, pressed)
+        if times[0] == times[-1]:  # an instant
+            times, q, v = times[:1], q[:1], v[:1]
+        here = law.here(times, q, v)
+        rates, still = here.rates, here.still
+        rows[newton.ANGLE], rows[newton.SLOPE], rows[newton.SPEED] = here.theta, here.slope, here.omega
+        rows[newton.RATE_Q], rows[newton.RATE_V], rows[newton.RATE_W] = rates[:3]
+        rows[newton.CURVED] = rates.v / (here.root * here.slope)
+        rows[state.INERTIA], rows[state.INERTIA_SLOPE] = still.inertia, still.inertia_slope
+        rows[state.TRAVEL] = still.travel
+        if rates.guide is not None:
+            rows[newton.NORMAL], rows[newton.WEDGE], rows[newton.UNSURE] = rates.guide
+        if slopes:
+            jacobian = law.jacobian(here, q)
+            for k, row in enumerate((newton.Q_BY_Q, newton.Q_BY_V, newton.V_BY_Q, newton.V_BY_V)):
+                rows[row] = jacobian[k]
 
-    def _speed_at_limit(self) -> float:
-        """0 with a massive rod or slider; else the crank runs into the limit."""
-        return 0.0 if self.model.coordinate.half else self.state.omega
 
-    def _cut(self, found: Crossing, panel: Panel) -> tuple[Panel, Array]:
-        """The panel up to an event, and the state there: solved for, not interpolated, where that differs."""
-        h = found.t - panel.start
-        if panel.error > EXACT and h > 1e-6 * panel.h and h <= panel.h:
-            panel = self.collocation.part_of(panel, h, self.top) or panel
-        t, y = found.t, panel.state(found.t)
-        if found.place >= 0 and not (found.mark.kind == "limit" and self.model.coordinate.half):
-            rates = panel.law.rates(np.array([t]), y[:1], y[1:2])
-            slope = float((rates.q, rates.v)[found.place][0])
-            miss = (found.value - y[found.place]) / slope if slope else 0.0
-            t = min(max(t + miss, panel.start), self.t_end)
-            y = panel.state(t)
-        if found.place >= 0:
-            y[found.place] = found.value
-        return panel._replace(stop=float(t)), y
+def _torques(curve: FunctionCurve) -> Callable[[int, int, int], None]:
+    """A user's torque as the loops call it: rows of t, theta and omega, and one to fill in."""
+
+    def torques(rows_at: int, apart: int, count: int) -> None:
+        rows = _memory(rows_at, 3 * apart + count)
+        columns = [rows[k * apart : k * apart + count] for k in range(3)]
+        if all(column[0] == column[-1] for column in columns):  # an instant
+            columns = [column[:1] for column in columns]
+        rows[3 * apart :] = curve.at(*columns)
+
+    return torques
+
+
+def _memory(start: int, size: int) -> Array:
+    memory: Any = (c_double * size).from_address(start)
+    return np.frombuffer(memory)
+
+
+def _address(function: Any) -> int:
+    return cast(function, c_void_p).value or 0

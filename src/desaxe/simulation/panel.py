@@ -10,7 +10,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from .law import Law, Rates
+from .law import Law
 
 Array = NDArray[np.float64]
 NODES = 16
@@ -21,6 +21,7 @@ ONCE = legendre.legint(np.eye(NODES), lbnd=-1, axis=0) / 2.0  # series -> series
 RUNNING = legendre.legvander(_X, NODES) @ ONCE @ SERIES
 INTEGRAL = ONCE @ SERIES  # values at the nodes -> series of their integral
 ENDS = legendre.legvander(np.array([-1.0, 1.0]), NODES - 1) @ SERIES  # values at the nodes -> at both ends
+TABLE = np.vstack([PLACES[None], RUNNING, INTEGRAL, SERIES[-2:], ENDS, SERIES])  # of the compiled loops
 
 
 def basis(x: Array, degree: int) -> Array:
@@ -45,7 +46,7 @@ def _basis_at(x: float, degree: int) -> list[float]:
 
 
 class Panel(NamedTuple):
-    """A solved panel: its law, start and length, and the series of q, v and W behind the start."""
+    """A solved panel: its law, start and length, the series of q, v and W behind the start, the end."""
 
     law: Law
     start: float
@@ -53,23 +54,4 @@ class Panel(NamedTuple):
     y: Array  # q, v, W at the start
     series: Array  # 3, NODES + 1: of what is added to them
     stop: float
-    error: float = 0.0  # of the inside, in tolerances
-    rates: Rates | None = None  # at the nodes
-
-    def state(self, t: Any) -> Array:
-        """q, v and W at an instant, or a column for each of several."""
-        s = (np.asarray(t) - self.start) / self.h if self.h else np.zeros(np.shape(t))
-        s = np.atleast_1d(s)
-        moved = (self.series @ basis(2.0 * s - 1.0, NODES)) * (s != 0.0)  # at the start nothing is rounded
-        found: Array = moved + self.y[:, None]
-        return found if np.ndim(t) else found[:, 0]
-
-    def end(self) -> Array:
-        """q, v and W at the end of the whole panel."""
-        whole: Array = self.y + self.series.sum(axis=1)
-        return whole
-
-
-def resting(law: Law, start: float, stop: float, y: Array) -> Panel:
-    """A panel in which nothing moves."""
-    return Panel(law, start, stop - start, y, np.zeros((3, NODES + 1)), stop)
+    rates: Array  # of q, v and W at the nodes, and others (see `loops.march`)

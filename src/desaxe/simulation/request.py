@@ -10,9 +10,7 @@ from ..support.deadline import Deadline
 from ..support.forks import IMPORTS
 from .checks import design_values, drive_of, model_of, scalar
 from .drive import LOADED
-from .energy.motion import design_of, motion_of
-from .energy.serves import tables_alone
-from .history import FORCES, instants_of, integrated
+from .history import FORCES, integrated
 from .march import March, Settings
 from .model import Model
 from .result import Simulation
@@ -33,29 +31,14 @@ class Ask(NamedTuple):
     until: tuple[float, ...]
 
 
-def one_motion(
-    ask: Ask, given: Mapping[str, Any], starts: Mapping[str, Any], times: Any, energy: bool = True
-) -> Simulation:
-    """The motion of one design.
-
-    energy   whether it may go over the crank angle, where that serves
-    """
+def one_motion(ask: Ask, given: Mapping[str, Any], starts: Mapping[str, Any], times: Any) -> Simulation:
+    """The motion of one design."""
     torque = starts["torque"]
     start = scalar("theta0", starts["theta0"], "rad"), scalar("omega_start", starts["omega_start"], "rad/s")
     drive = drive_of(torque, given["F_X"], given["F_Y"], ask.deadline, ask.derivative)
     values = design_values(given)
     model = model_of(values, ask.branch, start[0], drive)
     known: dict[str, Any] = {**values, "branch": ask.branch}
-    loads = {name: given[name] for name in FORCES if callable(given[name])}
-    tables = tables_alone({**loads, **({"torque": torque} if callable(torque) else {})}, model.mu)
-    if energy and tables and not ask.wrt:
-        pushes = torque if callable(torque) else drive.torque.at(0.0, *start)
-        design = design_of(values, model, pushes, loads.get("F_Y", values["F_Y"]), start)
-        asked = np.append(instants_of(times, ask.t_end), ask.t_end)
-        with np.errstate(all="ignore"):  # values beyond every double: the panels of time tell
-            motion = motion_of(model, design, ask.until, asked, ask.rtol, ask.max_steps, ask.deadline)
-            if motion is not None:
-                return motion.result(ask.names, times, {**known, **loads})
     kept = zip(FORCES, drive[1:], strict=True)
     curves = {n: c.load for n, c in kept if isinstance(c, LOADED)}
     return in_time(ask, model, start, times, known, curves)

@@ -22,8 +22,8 @@ def energy_residual(run: March) -> tuple[float, float]:
     max |kinetic + potential - W - initial| over the ends of panels, with the potential energy of the
     generated quantities.
     """
-    ends = [*(panel.y for panel in run.panels), run.y]
-    q, v, work = np.array(ends[: -1 if run.status == LIMIT else None]).T  # at a limit Y has half its digits
+    ends = np.vstack([run.record.y, run.record.last])
+    q, v, work = ends[: -1 if run.status == LIMIT else None].T  # at a limit Y has half its digits
     kinetic, potential = 0.5 * v * v, run.model.potential(run.model.coordinate.theta(q))
     known = np.isfinite(kinetic + potential + work)
     if not known.any():  # energies beyond every double

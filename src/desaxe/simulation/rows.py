@@ -1,7 +1,7 @@
-"""Many designs at once: in the energy form or in compiled lanes where they serve, else row by row."""
+"""Many designs at once: in compiled loops where they serve, else row by row."""
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from math import inf, isfinite, nan
 from types import MappingProxyType
@@ -10,13 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiler.llvm.loops import address
 from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..evaluation.evaluate import evaluate
 from ..loads.angles import zero_of
 from ..loads.arguments import arguments_of
-from ..loads.load import Load, OverY
-from ..loads.motors import Motor
+from ..loads.load import Load, OverY, TableOverTheta
+from ..loads.motors import Kloss, Motor
 from ..mechanism.closed import TURN
+from ..mechanism.closed.angles import dead_centres
 from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.inputs import LEAST, Input
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
@@ -24,27 +26,25 @@ from ..runtime.threads import run_parts
 from ..support.deadline import Deadline
 from ..support.interrupts import stopped_early
 from ..support.progress import Portions, progress_bar
-from .checks import follows_the_slider, grows
-from .collocation import TABLE
+from .checks import TIME_AND_CRANK, follows_the_slider, grows
 from .coordinate import arc_around, inside
-from .energy.many import NOT_HERE, follow_many
-from .energy.panels import Designs
-from .energy.serves import ENERGY, served, tables_alone
 from .history import PANELS
 from .loops import nodes, state
 from .loops.compiled import DesignFamily, motions, packed
+from .loops.motions import NOT_HERE
 from .loops.torque import compiled
 from .model import fixed_zeros, form_of
+from .panel import TABLE
+from .pieces import Sheet, meeting_angles, sheet_over_Y, table_sheet
 from .request import Ask, one_motion
 from .residual import TELLS, told_of
-from .result import DONE, FAILED, NO_START, SENSITIVITIES, WORDS, Simulation
+from .result import DONE, NO_START, SENSITIVITIES, WORDS, Simulation
 
 Array = NDArray[np.float64]
+DRIVE = ("torque", "F_Y", "F_X")
 MOTION, NUMBERS = ("theta", "omega", "alpha"), ("t_last", "energy_residual", "work")
 SAMPLES = 101  # instants of the histories by default
-LONGEST_PART = 64  # designs in one native call, that threads share the work evenly
-BRIEF = 500.0  # pieces of motions that run at once
-LONGEST_BLOCK = 256  # the same in the energy form: its arrays stay in the cache
+PART = 64  # designs in one native call, that threads share the work evenly
 MOST_STEPS = 2  # its place in `how`
 LARGE = 1_000  # designs that may take long: a bar tells
 _UNITS = {"theta0": "rad", "omega_start": "rad/s", "torque": "N*m"}
@@ -118,21 +118,13 @@ def simulate_rows(
     varying = {n: value for n, value in {**given, **starts}.items() if callable(value)}
     arrays, flat, shape = arrays_of(given, starts, motor)
     t = np.linspace(0.0, ask.t_end, SAMPLES) if times is None else times
-    size = int(np.prod(shape))
-    setup, status = setup_of({**{name: np.zeros(size) for name in varying}, **flat}, ask.branch)
+    arcs, status = arcs_of(flat)
     for load in varying.values():
         if isinstance(load, OverY):
             status[np.isnan(zero_of(load, [flat[n] for n in LENGTHS], ask.branch))] = NO_START
-    answers = Answers(size, t, ask, status)
-    how = np.array([ask.rtol, ask.t_end, ask.max_steps])
-    together = not (ask.until or ask.wrt or np.any(arrays["mu"]))
-    over_angles = together and tables_alone(varying, 0.0)
-    if over_angles:
-        scalars = {n: float(array) if array.ndim == 0 else array for n, array in arrays.items() if n != "mu"}
-        designs = designs_of({**scalars, **varying}, flat, setup, ask.branch)
-        _over_angles(ask, designs, answers, how, threads)
-    elif together and _is_function(torque) and varying.keys() == {"torque"}:
-        _in_lanes(ask, torque, arrays, flat, setup, answers, how, threads)
+    answers = Answers(status.size, t, ask, status)
+    if not ask.wrt and all(_in_loops(name, value) for name, value in varying.items()):
+        _together(ask, varying, arrays, flat, arcs, answers, threads)
     done = np.flatnonzero(answers.ways != "")
     if ask.names and done.size:
         state = {n: answers.histories[n][done] for n in MOTION}
@@ -141,13 +133,15 @@ def simulate_rows(
         everything: dict[str, Any] = {"branch": ask.branch, **state, **inputs, **forces}
         for name, values in evaluate(list(ask.names), **everything).items():
             answers.histories[name][done] = values
-    _one_by_one(ask, given, starts, flat, varying, answers, not over_angles)
+    _one_by_one(ask, given, starts, flat, varying, answers)
     return answers.result(shape, ask.rtol)
 
 
-def _is_function(torque: Any) -> bool:
-    """True for a user's function of t, theta and omega, or some of them."""
-    return callable(torque) and not isinstance(torque, (Load, Motor)) and not follows_the_slider(torque)
+def _in_loops(name: str, load: Any) -> bool:
+    """True for what compiled loops follow: tables, motors, and functions of t, theta and omega as a torque."""
+    if isinstance(load, (Load, Motor)):
+        return isinstance(load, (TableOverTheta, OverY, Motor))
+    return name == "torque" and not follows_the_slider(load)
 
 
 def _one_by_one(
@@ -157,7 +151,6 @@ def _one_by_one(
     flat: Mapping[str, Array],
     varying: Mapping[str, Any],
     answers: Answers,
-    energy: bool,
 ) -> None:
     """The motions that nothing has answered yet."""
     motor = starts["torque"] if isinstance(starts["torque"], Motor) else None
@@ -176,55 +169,119 @@ def _one_by_one(
             inputs = {name: design.get(name) for name in given}
             ask.deadline.check()
             begin = {name: design[name] for name in starts}
-            answers.put(row, one_motion(ask, inputs, begin, answers.t, energy))
+            answers.put(row, one_motion(ask, inputs, begin, answers.t))
             told.add(1)
 
 
-def _over_angles(ask: Ask, designs: Designs, answers: Answers, how: Array, threads: int | None) -> None:
-    """Fill in the motions that have an energy form."""
-    size, t = answers.size, answers.t
-    states = np.where(answers.status == NO_START, NO_START, -1).astype(np.int8)
-    numbers = np.full((size, 4), nan)
-    motion = [answers.histories[name] for name in MOTION]
-    by_energy(designs, t, how, (*motion, states, numbers), threads, ask.deadline)
-    done = np.flatnonzero((states >= 0) & (states != NO_START))
-    answers.status[done] = states[done]
-    answers.told(ENERGY, done, numbers)
-
-
-def _in_lanes(
+def _together(
     ask: Ask,
-    torque: Callable[..., Any],
+    varying: Mapping[str, Any],
     arrays: Mapping[str, Array],
     flat: Mapping[str, Array],
-    setup: Array,
+    arcs: Array,
     answers: Answers,
-    how: Array,
     threads: int | None,
 ) -> None:
-    """Fill in the motions under a function that numba compiles."""
-    arguments_of("torque", torque, ("t", "theta", "omega"))
-    code = compiled(torque)
-    scalars = {n: float(array) if array.ndim == 0 else array for n, array in arrays.items() if n != "mu"}
-    family = DesignFamily(form_of({n: flat[n] for n in CENTRES if n in flat}), fixed_zeros(scalars))
+    """Fill in the motions that compiled loops follow."""
     left = np.flatnonzero(answers.status < 0)
-    kernel, rows = family.kernel(), setup[left]
-    inputs = {name: column[left] for name, column in flat.items()}
-    data = packed(kernel, {"branch": float(ask.branch), **inputs}, left.size)
+    flat, arcs = {name: column[left] for name, column in flat.items()}, arcs[left]
+    scalars = {n: float(array) if array.ndim == 0 else array for n, array in arrays.items()}
+    family = DesignFamily(form_of(flat), fixed_zeros({**dict.fromkeys(LOADS, nan), **scalars}))
+    kernel = family.kernel()
+    inputs = {"branch": float(ask.branch), **dict.fromkeys(("F_X", "F_Y"), nan), **flat}
+    data = packed(kernel, inputs, left.size)
     law = np.zeros((left.size, state.ENERGY + 1))
-    law[:, state.KERNEL], law[:, state.HALF] = kernel.code.address, rows[:, 3]
-    law[:, state.FIRST], law[:, state.LAST] = rows[:, 1], rows[:, 2]
-    law[:, state.TORQUE], law[:, state.TORQUE + 1] = state.FUNCTION, code.address
-    law[:, state.FORCE + 1], law[:, state.THETA0 :] = rows[:, 5], rows[:, 6:]
-    histories = np.empty((left.size, len(MOTION), answers.t.size))
-    outs = histories, answers.status[left], np.full((left.size, 4), nan)
-    _run(law, data, answers.t, how, outs, threads, ask.deadline)
+    law[:, state.KERNEL], law[:, state.HALF : state.TORQUE] = kernel.code.address, arcs
+    law[:, state.LEANS], law[:, state.MU], law[:, state.RUBS] = ask.branch, flat["mu"], flat["mu"] != 0.0
+    law[:, state.TINY] = 1e-9 * flat["AB"]
+    law[:, state.THETA0], law[:, state.OMEGA_START] = flat["theta0"], flat["omega_start"]
+    if flat["mu"].any():
+        guide = family.guide()
+        contact = packed(guide, inputs, left.size)
+        law[:, state.CONTACT] = guide.code.address
+        law[:, state.CONTACT_DATA] = address(contact) + contact.strides[0] * np.arange(left.size)
+    pieces = PiecesOfDesigns(flat, ask.branch, arcs, law)
+    codes = [pieces.add(k, varying.get(name, flat.get(name))) for k, name in enumerate(DRIVE)]
+    kinks = pieces.kinks(ask.until)
+    timed = codes[0] is not None and "t" in arguments_of("torque", varying["torque"], TIME_AND_CRANK)
+    how = np.array([ask.rtol, ask.t_end, ask.max_steps, timed], float)
+    outs = np.empty((left.size, len(MOTION), answers.t.size)), answers.status[left], np.full((left.size, 4), nan)
+    known = law, data, kinks, pieces.sheets
+    _run(known, pieces.knots, answers.t, how, outs, threads, ask.deadline)
+    here = left[outs[1] != NOT_HERE]
     for k, name in enumerate(MOTION):
-        answers.histories[name][left] = histories[:, k]
-    answers.status[left] = outs[1]
+        answers.histories[name][here] = outs[0][outs[1] != NOT_HERE, k]
+    answers.status[here] = outs[1][outs[1] != NOT_HERE]
     numbers = np.full((answers.size, 4), nan)
     numbers[left] = outs[2]
-    answers.told(PANELS, left[outs[1] != NO_START], numbers)
+    answers.told(PANELS, here[answers.status[here] != NO_START], numbers)
+
+
+class PiecesOfDesigns:
+    """The pieces of the loads of designs, and the angles at which they meet, as compiled loops take them."""
+
+    def __init__(self, flat: Mapping[str, Array], branch: int, arcs: Array, law: Array) -> None:
+        self.flat, self.branch, self.arcs, self.law = flat, branch, arcs[:, 1:], law
+        self.size, self.knots = len(law), np.empty(0)
+        self.sheets, self.angles = np.empty((self.size, 0, 1 + 2 * state.SLOTS)), [np.empty((self.size, 0, 2))]
+
+    def add(self, k: int, load: Any) -> Any:
+        """Write torque or force into the law; the machine code of a function."""
+        law, first, arm = self.law, state.TORQUE + k * state.SLOTS, self.flat["AB"] if k else 1.0
+        size, code = 0.0, None
+        if isinstance(load, np.ndarray):
+            law[:, first + 1], size = load, load
+        elif isinstance(load, Kloss):
+            most, slip, speed, gear = (self.flat[name] for name in load.numbers)
+            law[:, first : first + 5] = np.stack(
+                [np.full(self.size, state.KLOSS), gear * np.copysign(most, speed), slip, speed, gear], axis=1
+            )
+            size = load.both(self.flat["omega_start"], self.flat)[0]
+        elif isinstance(load, (Load, Motor)):
+            sheet = self._sheet(load)
+            law[:, state.SHEETS + 3 * k : state.SHEETS + 3 * k + 3] = (
+                self.sheets.shape[1], sheet.rows.shape[1], sheet.period,
+            )  # fmt: skip
+            self.sheets = np.concatenate(
+                [self.sheets, np.broadcast_to(sheet.rows, (self.size, *sheet.rows.shape[1:]))], axis=1
+            )
+            size = np.abs(sheet.rows[:, :, 3]).max()
+        else:
+            code = compiled(load)
+            law[:, first], law[:, first + 1] = state.FUNCTION, code.address
+        if k < 2:
+            law[:, state.ENERGY] = np.maximum(law[:, state.ENERGY], np.abs(size) * arm)
+        return code
+
+    def _sheet(self, load: Any) -> Sheet:
+        if isinstance(load, Motor):
+            self.knots = np.array(load.knots)
+        elif isinstance(load, TableOverTheta):
+            knots = np.array(load.table.knots)
+            self.angles.append(np.stack(np.broadcast_arrays(knots, load.period), axis=-1)[None])
+        else:
+            lengths = [self.flat[name] for name in LENGTHS]
+            angles = meeting_angles(load, lengths, self.branch)
+            self.angles.append(np.stack(np.broadcast_arrays(angles, TURN), axis=-1))
+            return sheet_over_Y(load, lengths, self.branch, self.arcs, self._slider)
+        return table_sheet(load)
+
+    def _slider(self, theta: Array) -> tuple[Any, Any]:
+        inputs = {name: self.flat[name][:, None] for name in LENGTHS}
+        both = evaluate(["Y", "Y_wrt_theta"], theta=theta, branch=self.branch, **inputs)
+        return both["Y"], both["Y_wrt_theta"]
+
+    def kinks(self, until: Sequence[float]) -> Array:
+        """The angles at which motions are cut, their periods, and the status of a motion that ends there."""
+        if self.flat["mu"].any():
+            centres = dead_centres([self.flat[name] for name in LENGTHS])
+            self.angles.append(np.stack(np.broadcast_arrays(centres, TURN), axis=-1))
+        cuts = [np.broadcast_to(part, (self.size, *part.shape[1:])) for part in self.angles]
+        ends = np.array([(angle, np.inf, DONE) for angle in until]).reshape(-1, 3)
+        every = np.concatenate(cuts, axis=1)
+        every = np.concatenate([every, np.full((*every.shape[:2], 1), -1.0)], axis=2)
+        every[np.isnan(every[:, :, 0])] = -np.inf, np.inf, -1.0
+        return np.concatenate([every, np.broadcast_to(ends, (self.size, *ends.shape))], axis=1)
 
 
 def arrays_of(
@@ -249,12 +306,11 @@ def arrays_of(
     return arrays, flat, shape
 
 
-def setup_of(flat: Mapping[str, Array], branch: int) -> tuple[Array, NDArray[np.int8]]:
-    """The rows that the kernel starts from (see `compiled`), and a status where nothing can start."""
+def arcs_of(flat: Mapping[str, Array]) -> tuple[Array, NDArray[np.int8]]:
+    """Half of the arc and both limit angles of designs, and a status where nothing can start."""
     AB, BC, ec = (flat[name] for name in ("AB", "BC", "ec"))
-    theta = flat["theta0"]
-    status = np.full(theta.size, -1, np.int8)
-    arcs = np.full((theta.size, 3), (-np.inf, np.inf, 0.0))
+    status = np.full(AB.size, -1, np.int8)
+    arcs = np.full((AB.size, 3), (0.0, -np.inf, np.inf))
     good = np.logical_and.reduce([np.isfinite(column) for column in flat.values()])
     for name, least in LEAST.items():
         if name in flat:
@@ -266,24 +322,22 @@ def setup_of(flat: Mapping[str, Array], branch: int) -> tuple[Array, NDArray[np.
             status[row] = NO_START
         else:
             arcs[row] = arc
-    loads = np.abs(flat["F_Y"]) * AB
-    columns = (np.full(theta.size, float(branch)), *arcs.T, flat["torque"], flat["F_Y"], theta)
-    return np.stack([*columns, flat["omega_start"], loads], axis=1), status
+    return arcs, status
 
 
 def _arc(values: Mapping[str, float]) -> tuple[float, float, float] | None:
-    """The limit angles around the start and half their distance where the inertia grows there."""
+    """Half of the arc, where the inertia grows at its ends, and the limit angles around the start."""
     lengths = tuple(values[name] for name in LENGTHS)
     arc = arc_around(values["theta0"], *lengths)
     if arc is None or not inside(arc, values["theta0"]):
         return None
     smooth = isfinite(arc[0]) and grows(values) and theta_intervals(*lengths) != [(0.0, TURN)]
-    return (*arc, 0.5 * (arc[1] - arc[0]) if smooth else 0.0)
+    return 0.5 * (arc[1] - arc[0]) if smooth else 0.0, *arc
 
 
 def _run(
-    law: Array,
-    data: Array,
+    known: Sequence[Array],
+    knots: Array,
     t: Array,
     how: Array,
     outs: Sequence[Any],
@@ -297,20 +351,10 @@ def _run(
         limits[MOST_STEPS] = 0.0
 
     def block(a: int, b: int) -> None:
-        kernel(law[a:b], data[a:b], t, limits, *tables, *(out[a:b] for out in outs))
+        law, data, kinks, sheets = (np.ascontiguousarray(part[a:b]) for part in known)
+        kernel(law, data, kinks, knots, sheets, t, limits, *tables, *(out[a:b] for out in outs))
 
-    _in_parts(block, stop, len(law), LONGEST_PART, threads, deadline)
-
-
-def _in_parts(
-    block: Callable[[int, int], None],
-    stop: Callable[[], None],
-    size: int,
-    longest: int,
-    threads: int | None,
-    deadline: Deadline,
-) -> None:
-    """Run parts of all designs on threads, with a bar where they may take long."""
+    size = len(known[0])
     with progress_bar(unit="designs") if size > LARGE else nullcontext() as watch:
         told = Portions(size, "motions", watch)
 
@@ -318,60 +362,7 @@ def _in_parts(
             block(a, b)
             told.add(b - a)
 
-        stopped_early(lambda: run_parts(part, size, threads, 1, longest), stop, deadline)
-
-
-def designs_of(scalars: Mapping[str, Any], flat: Mapping[str, Array], setup: Array, branch: int) -> Designs:
-    """The designs as the energy form takes them."""
-    own = {**flat, **scalars}
-    loads = {name: value for name, value in own.items() if isinstance(value, Load)}
-    inputs = {
-        name: 0.0 if name in loads else value if isinstance(value, float) else flat[name]
-        for name, value in scalars.items()
-        if name not in STARTS
-    }
-    torque, force = (loads.get(name, flat.get(name)) for name in ("torque", "F_Y"))
-    with np.errstate(invalid="ignore"):
-        middle = np.where(np.isinf(setup[:, 1]), 0.0, 0.5 * (setup[:, 1] + setup[:, 2]))
-        middle[np.isfinite(middle) & np.isfinite(setup[:, 1]) & ~(setup[:, 3] > 0.0)] = np.nan
-    return Designs(inputs, branch, torque, force, flat["theta0"], flat["omega_start"], middle, setup[:, 3])
-
-
-def by_energy(
-    designs: Designs,
-    t: Array,
-    limits: Array,
-    outs: Sequence[Any],
-    threads: int | None,
-    deadline: Deadline,
-) -> None:
-    """Fill in the motions that have an energy form; the status of the others stays below 0."""
-    status, most = outs[3], limits[MOST_STEPS:].copy()
-    rows = np.flatnonzero((status < 0) & served(designs))
-    times, brief = np.append(t, limits[1]), np.minimum(most, BRIEF)
-
-    def stop() -> None:
-        most[0] = 0.0
-
-    def follow(own: Any, most: Array) -> Any:
-        """True for each row that has taken all pieces that it may."""
-        part = designs.some(own) if own.size < status.size else designs
-        found = follow_many(part, times, float(limits[0]), most)
-        unfinished = (found.status == FAILED) & (most[0] < limits[MOST_STEPS])
-        there = (found.status < NOT_HERE) & ~unfinished
-        for out, values in zip(outs[:3], found[:3], strict=True):
-            out[own[there]] = values[there, :-1]
-        status[own[there]], outs[4][own[there], :4] = found.status[there], found.numbers[there]
-        return unfinished
-
-    if 0 < rows.size <= LONGEST_BLOCK:  # a thread of its own would take longer than short motions do
-        rows = rows[follow(rows, brief)]
-    if rows.size:
-
-        def block(a: int, b: int) -> None:
-            follow(rows[a:b], most)
-
-        _in_parts(block, stop, rows.size, LONGEST_BLOCK, threads, deadline)
+        stopped_early(lambda: run_parts(part, size, threads, 1, PART), stop, deadline)
 
 
 def message(status: NDArray[np.int8]) -> str:

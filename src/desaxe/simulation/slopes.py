@@ -73,7 +73,7 @@ class MotionSlopes:
     def __init__(self, run: March, wrt: Sequence[str], inputs: Mapping[str, Any]) -> None:
         self.run, self.wrt, self.tangents = run, tuple(wrt), Tangents(run.model, wrt, inputs)
         self.shifts = Shifts(run, self.tangents)
-        self.motion = Motion.of(run)
+        self.motion = Motion(run)
         self.ends_at_limit = run.status == LIMIT and bool(run.model.coordinate.half)
         self.pieces = self._stretches()
         self.course = self._resolved()
@@ -201,8 +201,7 @@ class MotionSlopes:
         """dq/dt at a limit angle."""
         panel = self.run.panels[-1]
         s = np.array([2.0 * (self.run.t - panel.start) / panel.h - 1.0])
-        assert panel.rates is not None
-        return float(panel.rates.q @ SERIES.T @ basis(s, NODES - 1)[:, 0])
+        return float(panel.rates[Q] @ SERIES.T @ basis(s, NODES - 1)[:, 0])
 
     def _break_away(self, event: Event, theta: Array) -> Array:
         """dt/dp of the instant from which the torque moves the crank: T = T_in at barely a speed."""

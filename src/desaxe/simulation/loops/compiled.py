@@ -12,23 +12,23 @@ from ...mechanism.program import Variant
 from ...runtime.executor import CompiledKernel, compiled_kernel, kernel_for
 from ...runtime.kernels import KernelKey
 from ...support.signals import finished
-from .advance import advance
+from .march import advance
 from .motions import designs
 
 Array = NDArray[np.float64]
 NAMES = (  # see `state`
     *("M_eff", "M_eff_wrt_theta", "T_in", "T_in_wrt_theta", "Y_wrt_theta", "Y_wrt_theta_theta"),
-    "potential_energy",
+    *("potential_energy", "Y"),
 )
 GUIDE = ("N_C", "N_C_wrt_alpha", "N_C_wrt_omega0", "phi")
 UNLOADED = ("omega", "alpha", "mu", "F_X", "F_Y")
 _PANELS = (
-    *("f64[1]", "f64[1]", "f64[1]", "f64[2]", "f64[1]", "f64[1]", "f64[1]", "f64[2]", "f64[2]"),
-    *("f64[2]", "f64[2]", "f64[3]", "f64[3]", "f64[1]"),
+    *("f64[1]", "f64[1]", "f64[1]", "f64[2]", "f64[1]", "f64[2]", "f64[1]", "f64[1]", "f64[2]"),
+    *("f64[2]", "f64[2]", "f64[2]", "f64[3]", "f64[3]", "f64[2]", "f64[1]"),
 )
 _MOTIONS = (
-    *("f64[2]", "f64[2]", "f64[1]", "f64[1]", "f64[2]", "f64[2]", "f64[3]", "i8[1]"),
-    "f64[2]",
+    *("f64[2]", "f64[2]", "f64[3]", "f64[1]", "f64[3]", "f64[1]", "f64[1]", "f64[2]", "f64[2]", "f64[3]"),
+    *("i8[1]", "f64[2]"),
 )
 
 

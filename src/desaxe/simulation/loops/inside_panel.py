@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 from numpy import empty, int64
 
-from .advance import motion
 from .newton import RATE_Q, ROWS
 from .panel import WAIT, panel
+from .panels import motion
 from .picard import NODES, OF_ENERGY, OF_TIME, PACE, RATE, SERIES
 from .state import tell
 

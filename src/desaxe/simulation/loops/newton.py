@@ -5,7 +5,7 @@ The matrix is made at the first guess, and again only where the iteration is slo
 state    q at the nodes, then v
 rows     values at the nodes, in the order below, behind those of the kernel (see `state`)
 table    places of the nodes; running integrals; the series of an integral; the last two terms of a series;
-         values at both ends
+         values at both ends; the series of values
 scales   relative tolerance, largest |v| so far, the latter with this panel
 """
 
@@ -20,7 +20,6 @@ from ...compiler.llvm.loops import address, apart, call
 from .state import (
     ANSWER,
     BEND,
-    CONSTANT,
     CONTACT,
     CONTACT_DATA,
     DRAG,
@@ -34,17 +33,16 @@ from .state import (
     INERTIA,
     INERTIA_SLOPE,
     KERNEL,
-    KLOSS,
     LAST,
     LEANS,
     OUTPUTS,
-    OVER_OMEGA,
-    OVER_THETA,
+    POSITION,
     PRESSED,
     RUBS,
     SIDEWAYS,
     TORQUE,
     TRAVEL,
+    piece,
     quantities,
     reduced,
 )
@@ -55,31 +53,17 @@ if TYPE_CHECKING:
 TIME, ANGLE, SPEED, TURNED = range(OUTPUTS, OUTPUTS + 4)  # as a compiled torque takes them
 SLOPE, RATE_Q, RATE_V, RATE_W, Q_BY_Q, Q_BY_V, V_BY_Q, V_BY_V, CURVED = range(OUTPUTS + 4, OUTPUTS + 13)
 BY_THETA, BY_OMEGA, NORMAL, WEDGE, UNSURE, ROWS = range(OUTPUTS + 13, OUTPUTS + 19)
-RUNNING, SERIES, TAILS, ENDS = 1, 17, 34, 36  # rows of the table
+RUNNING, SERIES, TAILS, ENDS, POINTS = 1, 17, 34, 36, 38  # rows of the table
 NONE, STOP = 1, 2  # the law has no value; an exception ends the motion
 ITERATIONS = 14
 SLOW = 0.1  # of the step before: then the matrix is made anew
+CALM = 0.02  # of a coordinate, by a panel: then steps without a matrix do
 BLUR = 4e-16  # over cos(q)^2: the rounding of the rates next to a limit angle
 ROUNDING = 4e-15  # of the size of a coordinate
 DEVIATES = 30.0  # tolerances: by so much a rate differs where nodes have missed a jump
 TAIL = 30.0  # tolerances: the last terms of the rates, over the panel; its inside is far more exact
 NOISE = 1e-12  # of the terms of the normal force: below it, its sign is rounding
 STEP = 1e-7  # of an angle or a speed: a difference has seven digits
-
-
-def piece(c: Any, theta: float, omega: float) -> Any:
-    """A torque or force, and its derivatives by theta and omega."""
-    if c[0] == CONSTANT:
-        return c[1], 0.0, 0.0
-    if c[0] == KLOSS:
-        u = (1.0 - c[4] * omega / c[3]) / c[2]
-        square = u * u
-        bend = 2.0 * (1.0 - square) / ((1.0 + square) * (1.0 + square))
-        return c[1] * 2.0 * u / (1.0 + square), 0.0, c[1] * bend * (-c[4] / (c[3] * c[2]))
-    s = (theta if c[0] == OVER_THETA else omega) - c[1]
-    value = c[2] + s * (c[3] + s * (c[4] + s * c[5]))
-    slope = c[3] + s * (2.0 * c[4] + s * (3.0 * c[5]))
-    return value, slope if c[0] == OVER_THETA else 0.0, slope if c[0] == OVER_OMEGA else 0.0
 
 
 def function_at(law: Any, rows: Any, slopes: Any) -> int:
@@ -122,8 +106,11 @@ def torques(law: Any, rows: Any, slopes: Any) -> int:
     if law[TORQUE] == FUNCTION:
         return function_at(law, rows, slopes)
     for i in range(16):
-        value, by_theta, by_omega = piece(law[TORQUE:FORCE], rows[ANGLE, i], rows[SPEED, i])
+        value, by_theta, by_omega, by_Y = piece(
+            law[TORQUE:FORCE], rows[ANGLE, i], rows[SPEED, i], rows[POSITION, i]
+        )
         rows[TURNED, i], rows[BY_THETA, i], rows[BY_OMEGA, i] = value, by_theta, by_omega
+        rows[BY_THETA, i] += by_Y * rows[TRAVEL, i]
     return 0
 
 
@@ -153,9 +140,9 @@ def guide_at(angles: Any, law: Any, rows: Any, guide: Any) -> int:
     words: Any = zeros(20, int64)
     forces: Any = empty((2, 16))
     for i in range(16):
-        theta, omega = rows[ANGLE, i], rows[SPEED, i]
-        forces[0, i] = piece(law[SIDEWAYS:RUBS], theta, omega)[0]
-        forces[1, i] = piece(law[FORCE:SIDEWAYS], theta, omega)[0]
+        theta, omega, Y = rows[ANGLE, i], rows[SPEED, i], rows[POSITION, i]
+        forces[0, i] = piece(law[SIDEWAYS:RUBS], theta, omega, Y)[0]
+        forces[1, i] = piece(law[FORCE:SIDEWAYS], theta, omega, Y)[0]
     words[0], words[1] = address(angles), address(rows[SPEED])
     words[2], words[3], words[8] = address(forces[0]), address(forces[1]), 16
     for k in range(4):
@@ -185,7 +172,10 @@ def fill_rates(state: Any, law: Any, rows: Any, guide: Any) -> None:
     for i in range(16):
         slope, inertia, travel, omega = rows[SLOPE, i], rows[INERTIA, i], rows[TRAVEL, i], rows[SPEED, i]
         root = sqrt(inertia) if inertia >= 0.0 else nan
-        pushed, pushed_theta, pushed_omega = piece(law[FORCE:SIDEWAYS], rows[ANGLE, i], omega)
+        pushed, pushed_theta, pushed_omega, pushed_Y = piece(
+            law[FORCE:SIDEWAYS], rows[ANGLE, i], omega, rows[POSITION, i]
+        )
+        pushed_theta += pushed_Y * travel
         push = rows[TURNED, i] + pushed * travel
         share, by_alpha = 0.0, 0.0
         if law[RUBS] > 0.0:
@@ -277,6 +267,15 @@ def back(matrix: Any, order: Any, x: Any) -> None:
         x[i] = total / matrix[i, i]
 
 
+def calm(h: float, rows: Any) -> bool:
+    """True where a panel is so short that what it changes hardly acts on its rates."""
+    most = 0.0
+    for i in range(16):
+        across = h * h * abs(rows[Q_BY_V, i] * rows[V_BY_Q, i])
+        most = max(most, h * abs(rows[Q_BY_Q, i]) + h * abs(rows[V_BY_V, i]) + across)
+    return most < CALM
+
+
 def newton(
     t: float, h: float, y: Any, state: Any, scales: Any, law: Any, data: Any, table: Any, rows: Any,
     matrix: Any, series: Any,
@@ -284,7 +283,7 @@ def newton(
     """Solve a panel, whose state is a guess: the error of its inside, -1 where there is none, -2 to stop."""
     order: Any = empty(32)
     miss: Any = empty(32)
-    aim, before, made = max(0.02 * scales[0], ROUNDING), inf, False
+    aim, before, made, simple = max(0.02 * scales[0], ROUNDING), inf, False, False
     radian = max(1.0, abs(y[0]))
     for i in range(16):
         rows[TIME, i] = t + h * table[0, i]
@@ -296,11 +295,13 @@ def newton(
             miss[i] = y[0] - state[i] + h * product(table[RUNNING + i], rows[RATE_Q])
             miss[16 + i] = y[1] - state[16 + i] + h * product(table[RUNNING + i], rows[RATE_V])
         if not made:
-            fill_matrix(h, rows, table, matrix)
-            if not factor(matrix, order):
-                return -1.0
-            made = True
-        back(matrix, order, miss)
+            made, simple = True, calm(h, rows)
+            if not simple:
+                fill_matrix(h, rows, table, matrix)
+                if not factor(matrix, order):
+                    return -1.0
+        if not simple:
+            back(matrix, order, miss)
         top, far, fast, total = scales[1], 0.0, 0.0, 0.0
         for i in range(16):
             top = max(top, abs(state[16 + i]))

@@ -31,7 +31,7 @@ from .picard import (
     still_at_nodes,
     sweep,
 )
-from .state import torque
+from .state import DIRECTION, torque
 
 if TYPE_CHECKING:
     from typing import Any
@@ -96,7 +96,7 @@ def panel(
     furnish(energy == 0.0, table, room)
     still_at_nodes(y[0], width, law, data, room)
     begin = copysign(sqrt(2.0 * energy * room[MOBILITY, 0]), width)
-    first = torque(t, y[0], begin, law)
+    first = torque(t, y[0], begin, 0.0, law)
     guess(t, energy, first, width, room)
     ask(law, room)
     least = course(t, energy, width, table, room)
@@ -117,7 +117,7 @@ def panel(
     new[2] = y[2] + width * work
     end = t + abs(width) * time
     omega = copysign(1.0 / room[SLOWNESS, 15], width)
-    last = torque(end, new[0], omega, law)
+    last = torque(end, new[0], omega, 0.0, law)
     if jumps(first, room, 0, 1) or jumps(last, room, 15, -1):
         return end, inf
     return end, error_inside(width, least, table, room) / (INSIDE * rtol)
@@ -126,7 +126,7 @@ def panel(
 def by_panel(
     t: float,
     y: Any,
-    push: float,
+    gap: float,
     law: Any,
     data: Any,
     how: Any,
@@ -135,20 +135,20 @@ def by_panel(
     memory: Any,
     new: Any,
 ) -> float:
-    """The end of the next panel; -1 where steps in time go on. The push is what moves a crank at rest."""
+    """The end of the next panel, which goes no farther than a gap; -1 where steps in time go on."""
     if memory[1] > 0.0 or abs(y[0]) > FAR:
         memory[0], memory[1] = max(0.5, 3.0 * memory[2]), memory[1] - 1.0
         return -1.0
-    width, way = memory[0], y[1] if y[1] != 0.0 else push
+    width, way = memory[0], law[DIRECTION]
     for _ in range(TRIALS):
-        if width < max(LEAST, 1.5 * memory[2]) or way == 0.0:
+        if width < max(LEAST, 1.5 * memory[2]):
             break
-        memory[3] = copysign(width, way)
+        memory[3] = copysign(min(width, gap), way)
         end, error = panel(t, y, memory[3], law, data, how[0], TOO_WIDE, table, room, new)
         factor = min(2.0, max(0.25, (AIM / error) ** 0.0625)) if error > 0.0 else 2.0
         if error <= 1.0:
-            memory[0] = min(width * factor, WIDEST)
+            memory[0] = min(width * factor, WIDEST) if width < gap else width
             return float(end)
-        width *= min(factor, 0.8)
+        width = min(width, gap) * min(factor, 0.8)
     memory[1] = WAIT
     return -1.0

@@ -26,7 +26,20 @@ from numpy import empty, int64
 
 from ...compiler.helpers import mul_add
 from ...compiler.llvm.loops import apart, call
-from .state import FORCE, GRAVITY, INERTIA, OUTPUTS, TRAVEL, quantities, reduced, torque
+from .state import (
+    FORCE,
+    FUNCTION,
+    GRAVITY,
+    INERTIA,
+    OUTPUTS,
+    POSITION,
+    SIDEWAYS,
+    TRAVEL,
+    piece,
+    quantities,
+    reduced,
+    torque,
+)
 from .state import TORQUE as TORQUE_OF
 
 if TYPE_CHECKING:
@@ -35,7 +48,7 @@ if TYPE_CHECKING:
 NODES = int64(16)
 MOBILITY, LOAD, WEIGHT, TORQUE, ENERGY, SLOWNESS, RATE, MISS, GAIN, PART = range(10)  # mobility: 1/M_eff
 TIME, ANGLE, SPEED, NOW = 10, 11, 12, 13  # as the torque takes them
-OF_TIME, OF_ENERGY, PLACES, STRETCH, DEPTH, PACE, ROWS = 14, 15, 16, 17, 18, 19, 20
+OF_TIME, OF_ENERGY, PLACES, STRETCH, DEPTH, PACE, HEIGHT, ROWS = 14, 15, 16, 17, 18, 19, 20, 21
 SERIES, PLACE, SHARE, LAST = 16, 33, 34, 35  # columns of the table, behind the integrals
 USUAL, FROM_REST = int64(0), int64(16)  # rows of the table
 SWEEPS = int64(24)
@@ -60,7 +73,9 @@ def still_at_nodes(theta: float, width: float, law: Any, data: Any, room: Any) -
     quantities(found[OUTPUTS], law, data, found)
     for i in range(NODES):
         room[MOBILITY, i] = 1.0 / found[INERTIA, i]
-        room[LOAD, i] = law[FORCE + 1] * found[TRAVEL, i] * room[STRETCH, i]
+        room[HEIGHT, i] = found[POSITION, i]
+        load = piece(law[FORCE:SIDEWAYS], room[ANGLE, i], 0.0, room[HEIGHT, i])[0]
+        room[LOAD, i] = load * found[TRAVEL, i] * room[STRETCH, i]
         room[WEIGHT, i] = found[GRAVITY, i] * room[STRETCH, i]
 
 
@@ -127,8 +142,13 @@ def course(t: float, energy: float, width: float, table: Any, room: Any) -> floa
 
 def ask(law: Any, room: Any) -> float:
     """The torque at all nodes; by how much it has changed at most, NaN where it is none."""
-    if call(int64(law[PUSHED]), room[TIME], room.shape[1], NODES) != 0:
-        return nan
+    if law[TORQUE_OF] == FUNCTION:
+        if call(int64(law[PUSHED]), room[TIME], room.shape[1], NODES) != 0:
+            return nan
+    else:
+        for i in range(NODES):
+            angle, speed = room[ANGLE, i], room[SPEED, i]
+            room[NOW, i] = piece(law[TORQUE_OF:FORCE], angle, speed, room[HEIGHT, i])[0]
     differ(room)
     most, none = 0.0, 0.0
     for i in range(NODES):
@@ -150,8 +170,8 @@ def differ(room: Any) -> None:
 def bend_of(law: Any, room: Any) -> float:
     """The derivative of the torque by the speed in the middle of a panel, for the corrections alone."""
     t, angle, omega = room[TIME, 8], room[ANGLE, 8], room[SPEED, 8]
-    step = 1e-4 * omega
-    return float((torque(t, angle, omega + step, law) - torque(t, angle, omega, law)) / step)
+    step, Y = 1e-4 * omega, room[HEIGHT, 8]
+    return float((torque(t, angle, omega + step, Y, law) - torque(t, angle, omega, Y, law)) / step)
 
 
 def correct(bend: float, width: float, table: Any, room: Any) -> None:

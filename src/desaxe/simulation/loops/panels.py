@@ -1,11 +1,11 @@
-"""Panel after panel in plain loops, until something may cut the motion (see `march`).
+"""The next panel of time in plain loops, which are compiled: as long as the tolerance and the cuts allow.
 
-clock    instant, suggested length, end of the motion, largest error of an angle next to a limit angle
-kinks    rows of angles at which the motion is cut, and the periods in which they repeat, or inf
-knots    speeds at which it is cut
-heads    rows of panels: start, length, error, q, v and W at the start
-records  series of panels; at their nodes the rates of q, v and W, the speed, and under friction the normal
-         force, its wedging and its rounding
+clock    instant, suggested length, end of the motion, largest error of an angle next to a limit angle, 1
+         where the motion starts from an angle that it does not reach again, the side of the guide after a
+         change of side or 0, 1 where pieces and signs are chosen
+kinks    rows of angles at which the motion is cut, the periods in which they repeat, or inf, and the status
+         of a motion that ends there, or -1
+head     of a panel: start, length, error, q, v and W at the start, instant up to which it holds
 """
 
 from __future__ import annotations
@@ -20,26 +20,24 @@ from .newton import (
     CURVED,
     DEVIATES,
     ENDS,
-    NORMAL,
+    POINTS,
     RATE_Q,
     RATE_V,
     ROWS,
-    SPEED,
     STOP,
     TAIL,
     TIME,
-    WEDGE,
     law_at,
     newton,
     product,
 )
-from .state import FIRST, FUNCTION, HALF, KERNEL, LAST, RUBS, TORQUE
+from .state import FUNCTION, HALF, KERNEL, PROBE, TORQUE
 
 if TYPE_CHECKING:
     from typing import Any
 
-T, WISH, T_END, SHARP = 0, 1, 2, 3  # of the clock
-GOES_ON, FAILED, STOPPED, MAY_CUT = range(4)
+T, WISH, T_END, SHARP, LEFT, FLIPPED, CHOSEN = range(7)  # of the clock
+GOES_ON, FAILED, STOPPED = range(3)
 AHEAD = 1.3  # of a panel: so far its series guess the next one, from there on straight lines
 BEYOND = 1.15  # of a panel: so far its series reach a limit angle, next to which S has no digits
 AIM = 0.01  # tolerances: the error that the next length is chosen for
@@ -47,8 +45,6 @@ GROWTH = 2.0  # from panel to panel
 LEAST_H = 1e-6  # of the motion: no panel is shortened to less to tell a limit angle
 MOST = 1000.0 * 2.0 * pi  # rad in one panel
 NEAR = 1e-9  # rad: an angle that a stretch starts from is not reached at once
-STEADY = 0.9  # of the wedging of friction: beyond, it may jam
-MARGIN = 1e-7  # of a speed: so near to a knot it may be passed
 
 
 def value(series: Any, start: float, s: float) -> float:
@@ -62,7 +58,7 @@ def value(series: Any, start: float, s: float) -> float:
 
 
 def motion(t: float, y: Any, law: Any, data: Any, rows: Any, still: Any) -> int:
-    """The rates at the start of a panel, at the first node of `rows`."""
+    """The rates at an instant, at every node of `rows`."""
     for i in range(16):
         rows[TIME, i], still[i], still[16 + i] = t, y[0], y[1]
     return law_at(still, law, data, rows, 0)
@@ -94,6 +90,26 @@ def time_over(gap: float, speed: float, bend: float) -> float:
     return 2.0 * gap / below if below > 0.0 else inf
 
 
+def gap_to(kink: Any, theta: float, way: float, least: float) -> float:
+    """How far ahead an angle lies, or its next repetition, if that is more than `least`; infinite if none."""
+    gap: float = (kink[0] - theta) * way
+    if kink[1] < inf:
+        gap -= kink[1] * floor(gap / kink[1])
+        return gap if gap > least else gap + kink[1]
+    return gap if gap > least else inf
+
+
+def next_kink(theta: float, way: float, least: float, kinks: Any) -> Any:
+    """How far ahead the next angle lies that cuts the motion, and its row: first those that end it."""
+    best, row = inf, 0
+    for k in range(len(kinks)):
+        gap = gap_to(kinks[k], theta, way, least)
+        ends, other = kinks[k, 2] >= 0.0, kinks[row, 2] >= 0.0
+        if gap < best - NEAR or (gap < best and ends == other) or (ends and not other and gap < best + NEAR):
+            best, row = gap, k
+    return best, row
+
+
 def until_cut(y: Any, law: Any, kinks: Any, rows: Any) -> float:
     """The time to a little behind the next angle that cuts the motion, or to before a limit angle."""
     speed, bend, theta = rows[RATE_Q, 0], rows[CURVED, 0], rows[ANGLE, 0]
@@ -102,12 +118,7 @@ def until_cut(y: Any, law: Any, kinks: Any, rows: Any) -> float:
     if law[HALF] > 0.0:
         shortest = 0.95 * time_over(0.5 * pi - y[0] * way, speed * way, bend * way)
     else:
-        gap = inf
-        for k in range(len(kinks)):
-            left, every = (kinks[k, 0] - theta) * way, kinks[k, 1]
-            if every < inf:
-                left -= every * floor(left / every)
-            gap = min(gap, left) if left > NEAR else gap
+        gap, _ = next_kink(theta, way, NEAR, kinks)
         if gap < inf:
             shortest = 1.1 * time_over(gap, speed * way, bend * way)
     return shortest if shortest > 0.0 else inf
@@ -119,69 +130,28 @@ def blurs(error: float, h: float, y: Any, law: Any, clock: Any, rtol: float, ser
     end = copysign(0.5 * pi, beyond - at_end)
     if (at_end - end) * (beyond - end) >= 0.0:
         return False
-    low, high = 1.0, BEYOND
-    for _ in range(50):
-        s = 0.5 * (low + high)
-        if (value(series[0], y[0], s) - end) * (at_end - end) > 0.0:
-            low = s
-        else:
-            high = s
-    x = 2.0 * high - 1.0
+    x = 2.0 * root(series[0], y[0], end, 1.0, BEYOND) - 1.0
     growth = (x + sqrt(x * x - 1.0)) ** 16.0
     return bool(error * TAIL * rtol * growth > max(rtol, clock[SHARP]) and h > LEAST_H * clock[T_END])
 
 
-def reaches(low: float, high: float, angle: float, every: float) -> bool:
-    """True if an angle, or one of its repetitions, lies in a range."""
-    if every < inf:
-        angle += every * floor((high - angle) / every)
-    return low <= angle <= high
-
-
-def friction_may_change(law: Any, rows: Any) -> bool:
-    """True where the normal force may change its sign in a panel, or the friction may jam."""
-    if law[KERNEL] == 0.0:
-        return True
-    low, high, least, most = inf, -inf, inf, -inf
-    for i in range(16):
-        low, high = min(low, rows[NORMAL, i]), max(high, rows[NORMAL, i])
-        least, most = min(least, rows[WEDGE, i]), max(most, rows[WEDGE, i])
-    wide = 0.2 * (most - least)
-    safe = low > 0.2 * (high - low) and most + wide < STEADY and least - wide > -STEADY
-    return not safe
-
-
-def may_cut(y: Any, end: Any, law: Any, kinks: Any, knots: Any, rows: Any, series: Any) -> bool:
-    """True where a kink, a knot, a limit angle or a standstill may lie in a panel."""
-    if (law[RUBS] > 0.0 and friction_may_change(law, rows)) or end[1] * y[1] <= 0.0:
-        return True
-    rest, mean = 0.0, y[1] + series[1, 0]
-    for j in range(1, 17):
-        rest += abs(series[1, j])
-    if abs(mean) <= rest:
-        return True
-    far = value(series[0], y[0], BEYOND)
-    if law[HALF] > 0.0 and abs(far) >= 0.5 * pi:
-        return True
-    if law[HALF] == 0.0:
-        low, high = min(y[0], end[0]), max(y[0], end[0])
-        if low <= law[FIRST] or high >= law[LAST]:
-            return True
-        for k in range(len(kinks)):
-            if reaches(low - NEAR, high + NEAR, kinks[k, 0], kinks[k, 1]):
-                return True
-    elif len(kinks) > 0:
-        return True
-    slow, fast, size = inf, -inf, 0.0
-    for i in range(16):
-        slow, fast = min(slow, rows[SPEED, i]), max(fast, rows[SPEED, i])
-    for k in range(len(knots)):
-        size = max(size, abs(knots[k]))
-    margin = 0.1 * (fast - slow) + MARGIN * size
-    found = False
-    for k in range(len(knots)):
-        found = found or slow - margin <= knots[k] <= fast + margin
-    return found
+def root(series: Any, start: float, aim: float, a: float, b: float) -> float:
+    """The part of a panel between two at which a series has a value that it passes there."""
+    at_a, at_b = value(series, start, a) - aim, value(series, start, b) - aim
+    if at_a == 0.0 or at_b == 0.0 or not at_a * at_b < 0.0:
+        return a if abs(at_a) < abs(at_b) else b
+    for _ in range(100):  # regula falsi; an end that stays counts half
+        s = b - at_b * (b - a) / (at_b - at_a)
+        now = value(series, start, s) - aim
+        if now * at_b < 0.0:
+            a, at_a = b, at_b
+        else:
+            at_a *= 0.5
+        done = now == 0.0 or abs(s - b) <= 1e-15
+        b, at_b = s, now
+        if done:
+            break
+    return b
 
 
 def jumps(
@@ -201,9 +171,29 @@ def jumps(
     return bool(h * worst > DEVIATES * TAIL * scales[0] * scales[2])
 
 
-def keep(head: Any, t: float, h: float, error: float, y: Any) -> None:
-    """Record a panel's start, length, error and state."""
-    head[0], head[1], head[2], head[3], head[4], head[5] = t, h, error, y[0], y[1], y[2]
+def missed(
+    t: float, h: float, y: Any, scales: Any, law: Any, data: Any, table: Any, rows: Any, series: Any
+) -> float:  # fmt: skip
+    """A shorter length for a panel whose nodes have missed what a function does in time; 0 for none."""
+    every, state, other, rates = law[PROBE], empty(32), empty((ROWS, 16)), empty(17)
+    for j in range(16):
+        rates[j] = product(table[POINTS + j], rows[RATE_V])
+    rates[16] = 0.0
+    k, last = floor(t / every) + 1.0, (t + h) / every
+    while k < last:
+        for i in range(16):
+            other[TIME, i] = every * min(k + i, max(k, floor(last) - (floor(last) == last)))
+            s = (other[TIME, i] - t) / h
+            state[i], state[16 + i] = value(series[0], y[0], s), value(series[1], y[1], s)
+        if law_at(state, law, data, other, 0) != 0:
+            return 0.0
+        for i in range(16):
+            s = (other[TIME, i] - t) / h
+            off = h * abs(other[RATE_V, i] - value(rates, 0.0, s))
+            if off > DEVIATES * TAIL * scales[0] * max(scales[1], abs(state[16 + i])):
+                return max(other[TIME, i] - t - every, 0.5 * (other[TIME, i] - t))
+        k += 16.0
+    return 0.0
 
 
 def one(
@@ -242,7 +232,12 @@ def one(
         if law[HALF] > 0.0 and blurs(error, h, y, law, clock, scales[0], series):
             h *= 0.5
             continue
-        if law[TORQUE] == FUNCTION and jumps(t, h, y, scales, law, data, table, rows, series):
+        shorter = missed(t, h, y, scales, law, data, table, rows, series) if law[PROBE] > 0.0 else 0.0
+        if shorter > 0.0:
+            h = shorter
+            continue
+        by_function = law[TORQUE] == FUNCTION or law[KERNEL] == 0.0
+        if by_function and jumps(t, h, y, scales, law, data, table, rows, series):
             h *= 0.5
             continue
         grown = h * min(GROWTH, max(factor, 0.5))
@@ -252,43 +247,6 @@ def one(
     return FAILED
 
 
-def advance(
-    y: Any, clock: Any, scales: Any, kinks: Any, knots: Any, law: Any, data: Any, table: Any, rows: Any,
-    matrix: Any, heads: Any, records: Any, rates: Any, count: Any,
-) -> int:  # fmt: skip
-    """Panels until one may be cut, or the memory of records is full; the last one is not accepted.
-
-    count   in: 1 where the first row has the panel before; out: panels of this call
-    """
-    made, room = 0, len(heads) - 1
-    if count[0] == 0.0:
-        heads[0, 1] = 0.0
-    answer = GOES_ON
-    while made < room and clock[T] < clock[T_END]:
-        head, series = heads[made + 1], records[made + 1]
-        answer = one(
-            y, clock, scales, kinks, law, data, table, rows, matrix, heads[made], records[made], head, series
-        )
-        if answer != GOES_ON:
-            break
-        made += 1
-        for i in range(16):
-            for k in range(3):
-                rates[made, k, i] = rows[RATE_Q + k, i]
-            rates[made, 3, i] = rows[SPEED, i]
-            for k in range(3):
-                rates[made, 4 + k, i] = rows[NORMAL + k, i]
-        end: Any = empty(3)
-        for k in range(3):
-            end[k] = value(series[k], y[k], 1.0)
-        if may_cut(y, end, law, kinks, knots, rows, series) or made == room:
-            answer = MAY_CUT
-            break
-        clock[T] += head[1]
-        if clock[T] >= clock[T_END] * (1.0 - 1e-15):
-            clock[T] = clock[T_END]
-        for k in range(3):
-            y[k] = end[k]
-        scales[1] = max(scales[1], abs(y[1]))
-    count[0] = made
-    return answer
+def keep(head: Any, t: float, h: float, error: float, y: Any) -> None:
+    """Record a panel's start, length, error and state."""
+    head[0], head[1], head[2], head[3], head[4], head[5], head[6] = t, h, error, y[0], y[1], y[2], t + h

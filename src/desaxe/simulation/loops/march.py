@@ -1,0 +1,350 @@
+"""The motion of one design in plain loops, which are compiled: pieces, panel, cut, and again.
+
+sheets   pieces of loads: rows of angles (or speeds) from which they hold, and their numbers for both ways
+knots    speeds at which pieces meet
+records  series of panels; at their nodes the rates of q, v and W, the speed, and under friction the normal
+         force, its wedging and its rounding
+ends     kind of the cut at the end of a panel, row of its angle; direction, sign of Y' and side of the guide
+         that hold on the panel, and the direction in which the speed grows
+"""
+
+from __future__ import annotations
+
+from math import copysign, floor, sqrt
+from typing import TYPE_CHECKING
+
+from numpy import empty, int64
+
+from ...compiler.llvm.loops import call
+from .cuts import (
+    JAMMED,
+    KIND,
+    KINK,
+    LIMIT,
+    LOST_AT,
+    NO_CUT,
+    PART,
+    PLACE,
+    ROW,
+    SAME,
+    STANDSTILL,
+    VALUE,
+    earliest,
+)
+from .newton import (
+    ANGLE,
+    NORMAL,
+    RATE_Q,
+    RATE_V,
+    ROWS,
+    SLOPE,
+    SPEED,
+    UNSURE,
+    WEDGE,
+    newton,
+)
+from .panels import CHOSEN, FLIPPED, GOES_ON, LEFT, STOPPED, T_END, WISH, T, guess, motion, one, value
+from .state import (
+    CHOOSE,
+    DIRECTION,
+    DRAG,
+    HALF,
+    INERTIA,
+    INERTIA_SLOPE,
+    MU,
+    OVER_THETA,
+    PRESSED,
+    RUBS,
+    SHEETS,
+    SIDE,
+    SLOTS,
+    TINY,
+    TORQUE,
+    TRAVEL,
+    place,
+)
+
+if TYPE_CHECKING:
+    from typing import Any
+
+RESTS, NO_BALANCE, TWO_BALANCES, CUT = range(3, 7)  # besides those of `panels`
+JAMS_AT = 1.0 - 1e-6  # see `..law`
+AHEAD = 1e-9  # rad: which piece follows an angle
+BEHIND = 1e-8  # of the largest speed of a motor's table: which piece of it follows a speed
+TURNED_ON = 1e-6  # rad: so far from a dead centre the slider has left its position
+SOON = 1e-6  # of the motion: then a normal force has left 0
+EXACT = 0.02  # tolerances: a panel whose inside is so exact need not be solved again up to a cut
+GROWING = int64(6)  # of the choice: numbers that a function takes which chooses pieces
+
+
+def piece_of(load: Any, angle: float, speed: float, way: float, sheets: Any, law: Any) -> None:
+    """The piece of a load that holds at an angle or a speed."""
+    first, count = int64(law[SHEETS + 3 * load]), int64(law[SHEETS + 3 * load + 1])
+    period, turns, x = law[SHEETS + 3 * load + 2], 0.0, speed
+    if count == 0:
+        return
+    if period > 0.0:
+        turns = floor((angle - sheets[first, 0]) / period)
+        x = angle - period * turns
+    low, high = first, first + count
+    while high - low > 1:
+        middle = int64(0.5 * (low + high))
+        if sheets[middle, 0] <= x:
+            low = middle
+        else:
+            high = middle
+    column = 1 if way > 0.0 else 1 + SLOTS
+    for k in range(SLOTS):
+        law[TORQUE + SLOTS * load + k] = sheets[low, column + k]
+    if law[TORQUE + SLOTS * load] == OVER_THETA:
+        law[TORQUE + SLOTS * load + 1] += period * turns
+
+
+def pieces(
+    t: float, theta: float, omega: float, way: float, growing: float, fast: float, sheets: Any, law: Any
+) -> int:
+    """The pieces of all loads that hold from a state on; not 0 where a function has raised an exception."""
+    law[DIRECTION] = way
+    if law[CHOOSE] != 0.0:
+        choice: Any = empty(5)
+        choice[0], choice[1], choice[2], choice[3], choice[4] = t, theta, omega, way, growing
+        return call(int64(law[CHOOSE]), choice, 0, 0)
+    for load in range(3):
+        speed = omega + copysign(BEHIND * fast, growing)
+        piece_of(load, theta + copysign(AHEAD, way), speed, way, sheets, law)
+    return 0
+
+
+def acceleration(rows: Any) -> float:
+    """The acceleration of the crank at the first node."""
+    inertia, omega = rows[INERTIA, 0], rows[SPEED, 0]
+    bent = 0.5 * rows[INERTIA_SLOPE, 0] * omega * omega
+    return float((rows[RATE_V, 0] * sqrt(inertia) - bent) / inertia)
+
+
+def balances(rows: Any) -> Any:
+    """Of the guide at the first node, with the positive side held: its side, and the sets of forces."""
+    side = copysign(1.0, rows[NORMAL, 0])
+    share = rows[WEDGE, 0] * side
+    return side, 0 if share >= JAMS_AT else 2 if share < -1.0 else 1
+
+
+def law_for(
+    t: float, y: Any, way: float, fast: float, sheets: Any, law: Any, data: Any, rows: Any, still: Any
+) -> Any:
+    """The law for one way of turning: code of an error, sets of forces, acceleration, side of the guide."""
+    code, side, solutions, growing = 0, 1.0, 1, 1.0
+    for trial in range(2):
+        if code == 0:
+            code = pieces(t, rows[ANGLE, 0], rows[SPEED, 0], way, growing, fast, sheets, law)
+        law[PRESSED] = 1.0
+        code = motion(t, y, law, data, rows, still) if code == 0 else code
+        if law[RUBS] > 0.0 and code == 0:
+            side, solutions = balances(rows)
+            law[PRESSED] = side
+            code = motion(t, y, law, data, rows, still)
+        if trial == 1 or not fast > 0.0 or code != 0:
+            break
+        growing = copysign(1.0, acceleration(rows))
+    return code, solutions, acceleration(rows), side
+
+
+def lean(y: Any, t: float, way: float, law: Any, data: Any, rows: Any, still: Any) -> int:
+    """The sign of Y' where the crank is, or just ahead of it at a dead centre."""
+    ahead: Any = empty(3)
+    travel, code = rows[TRAVEL, 0], 0
+    if abs(travel) <= law[TINY]:
+        ahead[0], ahead[1], ahead[2] = y[0] + TURNED_ON * way / rows[SLOPE, 0], y[1], y[2]
+        code = motion(t, ahead, law, data, rows, still)
+        travel = rows[TRAVEL, 0]
+        code = motion(t, y, law, data, rows, still) if code == 0 else code
+    law[SIDE] = copysign(1.0, travel)
+    law[DRAG] = law[MU] * law[SIDE] * way
+    return code
+
+
+def soon_pressed(t: float, y: Any, clock: Any, law: Any, data: Any, rows: Any, still: Any) -> float:
+    """The side of the guide just after the normal force has vanished, from the motion as it is."""
+    later: Any = empty(3)
+    side, ahead = law[PRESSED], SOON * clock[T_END]
+    if clock[WISH] > 0.0:
+        ahead = min(ahead, clock[WISH])
+    if motion(t, y, law, data, rows, still) != 0:
+        return float(side)
+    later[0], later[1], later[2] = y[0] + ahead * rows[RATE_Q, 0], y[1] + ahead * rows[RATE_V, 0], y[2]
+    law[PRESSED] = 1.0
+    if motion(t + ahead, later, law, data, rows, still) == 0 and abs(rows[NORMAL, 0]) > rows[UNSURE, 0]:
+        side = copysign(1.0, rows[NORMAL, 0])
+    law[PRESSED] = side
+    return float(side)
+
+
+def choose(
+    y: Any, clock: Any, knots: Any, sheets: Any, law: Any, data: Any, rows: Any, still: Any
+) -> int:
+    """Choose direction, pieces and signs that hold from a state on: GOES_ON, or why none does."""
+    t, fast, starts = clock[T], 0.0, 0
+    for k in range(len(knots)):
+        fast = max(fast, abs(knots[k]))
+    if y[1] != 0.0 and law[RUBS] == 0.0 and fast == 0.0:
+        clock[CHOSEN] = 1.0
+        return pieces(t, place(y[0], law), 0.0, copysign(1.0, y[1]), 1.0, fast, sheets, law)
+    law[PRESSED] = 1.0
+    code = motion(t, y, law, data, rows, still)
+    if code != 0:
+        return code
+    first, last = (copysign(1.0, y[1]), 1) if y[1] != 0.0 else (1.0, 2)
+    way, chosen, side = first, 0.0, 1.0
+    for trial in range(last):
+        way = first if trial == 0 else -first
+        code = lean(y, t, way, law, data, rows, still) if law[RUBS] > 0.0 else 0
+        if code != 0:
+            return code
+        code, solutions, alpha, pressed = law_for(t, y, way, fast, sheets, law, data, rows, still)
+        if code != 0:
+            return code
+        if y[1] != 0.0:
+            if solutions != 1:
+                return NO_BALANCE if solutions == 0 else TWO_BALANCES
+            starts, chosen, side = 1, way, pressed
+        elif law[RUBS] == 0.0 and way * alpha >= 0.0:
+            starts, chosen = 1, way
+            break
+        elif law[RUBS] > 0.0 and solutions == 1 and way * alpha > 0.0:
+            starts, chosen, side = starts + 1, way, pressed
+    if starts != 1:
+        return RESTS if starts == 0 else TWO_BALANCES
+    if chosen != way:
+        if law[RUBS] > 0.0:
+            code = lean(y, t, chosen, law, data, rows, still)
+        code, solutions, alpha, side = law_for(t, y, chosen, fast, sheets, law, data, rows, still)
+    if law[RUBS] > 0.0:
+        law[PRESSED] = 1.0
+        code = motion(t, y, law, data, rows, still)
+        unsure = abs(rows[NORMAL, 0]) <= rows[UNSURE, 0]
+        law[PRESSED] = clock[FLIPPED] if clock[FLIPPED] != 0.0 else side
+        if unsure:
+            law[PRESSED] = soon_pressed(t, y, clock, law, data, rows, still)
+        clock[FLIPPED] = 0.0
+    clock[CHOSEN] = 1.0
+    return code
+
+
+def shortened(
+    y: Any, clock: Any, scales: Any, law: Any, data: Any, table: Any, rows: Any, matrix: Any, head: Any,
+    series: Any, cut: Any,
+) -> None:  # fmt: skip
+    """Solve a panel again up to its cut, where its inside is not exact."""
+    state, part, copy = empty(32), empty((3, 17)), empty((ROWS, 16))
+    h = cut[PART] * head[1]
+    if not (head[2] > EXACT and cut[PART] > 1e-6 and cut[PART] <= 1.0):
+        return
+    guess(clock[T], h, y, head, series, table, rows, state)
+    error = newton(clock[T], h, y, state, scales, law, data, table, copy, matrix, part)
+    if error < 0.0:
+        return
+    head[1], head[2], cut[PART] = h, error, 1.0
+    for j in range(17):
+        for k in range(3):
+            series[k, j] = part[k, j]
+    for k in range(ROWS):
+        for i in range(16):
+            rows[k, i] = copy[k, i]
+
+
+def cut_at(
+    y: Any, clock: Any, law: Any, data: Any, still: Any, head: Any, series: Any, cut: Any, new: Any
+) -> float:  # fmt: skip
+    """The instant of a cut, and the state there."""
+    rows: Any = empty((ROWS, 16))
+    t, h, at = clock[T] + cut[PART] * head[1], head[1], int64(cut[PLACE])
+    for k in range(3):
+        new[k] = value(series[k], y[k], cut[PART])
+    if cut[PLACE] < 0.0:
+        return float(t)
+    if not (cut[KIND] == LIMIT and law[HALF] > 0.0) and motion(t, new, law, data, rows, still) == 0:
+        rate = rows[RATE_Q + at, 0]
+        later = t + (cut[VALUE] - new[at]) / rate if rate != 0.0 else t
+        if later == later:
+            t = min(max(later, clock[T]), clock[T_END])
+            for k in range(3):
+                new[k] = value(series[k], y[k], (t - clock[T]) / h)
+    new[at] = cut[VALUE]
+    return float(t)
+
+
+def step(
+    y: Any, clock: Any, scales: Any, kinks: Any, knots: Any, sheets: Any, law: Any, data: Any, table: Any,
+    rows: Any, matrix: Any, last: Any, before: Any, head: Any, series: Any, cut: Any, new: Any,
+) -> int:  # fmt: skip
+    """The next panel, up to its cut: GOES_ON or CUT, and the state at its end, or why there is none."""
+    still: Any = empty(32)
+    if clock[CHOSEN] == 0.0:
+        code = choose(y, clock, knots, sheets, law, data, rows, still)
+        if code != GOES_ON:
+            return STOPPED if code == 2 else code
+    code = one(y, clock, scales, kinks, law, data, table, rows, matrix, last, before, head, series)
+    if code != GOES_ON:
+        return code
+    earliest(y, law, kinks, knots, table, rows, series, clock, cut)
+    clock[LEFT] = 0.0
+    if cut[PART] <= 2.0 and clock[T] + cut[PART] * head[1] <= clock[T_END]:
+        lost = cut[LOST_AT] <= cut[PART] + SAME
+        shortened(y, clock, scales, law, data, table, rows, matrix, head, series, cut)
+        head[6] = cut_at(y, clock, law, data, still, head, series, cut, new)
+        clock[LEFT] = 1.0 if cut[PLACE] == 0.0 else 0.0
+        clock[CHOSEN] = 0.0
+        clock[FLIPPED] = -law[PRESSED] if lost else 0.0
+        code = CUT
+    else:
+        cut[KIND] = NO_CUT
+        for k in range(3):
+            new[k] = value(series[k], y[k], 1.0)
+        if head[6] >= clock[T_END] * (1.0 - 1e-15):
+            head[6] = clock[T_END]
+    clock[T], scales[1] = head[6], max(scales[1], abs(new[1]))
+    return code
+
+
+def ends_motion(cut: Any, kinks: Any) -> bool:
+    """True where a motion ends at a cut."""
+    if cut[KIND] == KINK:
+        return bool(kinks[int64(cut[ROW]), 2] >= 0.0)
+    return bool(cut[KIND] == LIMIT or cut[KIND] == JAMMED)
+
+
+def advance(
+    y: Any, clock: Any, scales: Any, kinks: Any, knots: Any, sheets: Any, law: Any, data: Any, table: Any,
+    rows: Any, matrix: Any, heads: Any, records: Any, rates: Any, ends: Any, count: Any,
+) -> int:  # fmt: skip
+    """Panels until the motion ends or stands still, or the memory of records is full: GOES_ON.
+
+    count   in: 1 where the first row has the panel before; out: panels of this call
+    """
+    cut, new = empty(6), empty(3)
+    made, most = 0, len(heads) - 1
+    if count[0] == 0.0:
+        heads[0, 1] = 0.0
+    code = GOES_ON
+    while made < most and clock[T] < clock[T_END]:
+        head, series = heads[made + 1], records[made + 1]
+        code = step(
+            y, clock, scales, kinks, knots, sheets, law, data, table, rows, matrix, heads[made],
+            records[made], head, series, cut, new,
+        )  # fmt: skip
+        if code != GOES_ON and code != CUT:
+            break
+        made += 1
+        for i in range(16):
+            for k in range(3):
+                rates[made, k, i], rates[made, 4 + k, i] = rows[RATE_Q + k, i], rows[NORMAL + k, i]
+            rates[made, 3, i] = rows[SPEED, i]
+        ends[made, 0], ends[made, 1], ends[made, 2] = cut[KIND], cut[ROW], law[DIRECTION]
+        ends[made, 3], ends[made, 4] = law[SIDE], law[PRESSED]
+        for k in range(3):
+            y[k] = new[k]
+        if code == CUT and (ends_motion(cut, kinks) or cut[KIND] == STANDSTILL):
+            break
+        code = GOES_ON
+    count[0] = made
+    return code
