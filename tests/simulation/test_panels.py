@@ -7,15 +7,14 @@ import pytest
 
 import desaxe as dx
 from benchmarks.rows import cranks
-from desaxe.simulation.collocation import TABLE
 from desaxe.simulation.loops import nodes, picard, state
 from desaxe.simulation.loops.compiled import DesignFamily, motions, packed
 from desaxe.simulation.loops.motions import designs
 from desaxe.simulation.loops.torque import compiled
 from desaxe.simulation.model import form_of
+from desaxe.simulation.panel import TABLE
 from tests.effort import cases
 from tests.motions import true_end
-from tests.simulation.by_time import by_time
 
 
 def wave(t, theta, omega):
@@ -44,37 +43,26 @@ def drawn(count, seed):
     }  # fmt: skip
 
 
-def off(found, other):
-    """The largest difference of histories, relative to the largest value of each."""
-    sizes = {"theta": 1.0, "omega": 1.0, "alpha": 1e-2}
-    parts = []
-    for name, factor in sizes.items():
-        a, b = found[name], other[name]
-        assert np.array_equal(np.isnan(a), np.isnan(b))
-        size = np.maximum(np.nanmax(np.abs(b), axis=-1, keepdims=True), 1.0)
-        parts.append(factor * np.nanmax(np.abs(a - b) / size))
-    return max(parts)
-
-
-@pytest.mark.parametrize(
-    "torque",
-    [wave, *(pytest.param(f, marks=pytest.mark.thorough) for f in (jumps, of_t_and_omega))],
-)
-def test_the_motions_are_those_of_an_integrator_in_time(torque):
-    call = {"torque": torque, "t_end": 1.5, "rtol": 1e-9, **drawn(cases(60, 300), seed=7)}
-    found, other = dx.simulate(**call), by_time(**call)
-    assert (found["method"] == "panels").sum() > 0.4 * found["method"].size
-    assert set(other["method"].tolist()) <= {"panels", ""}
-    assert found["status"].tolist() == other["status"].tolist()
-    assert off(found, other) < 1e-5
-    usual = {name: np.nanmedian(np.abs(found[name] - other[name])) for name in ("theta", "omega")}
-    assert max(usual.values()) < (1e-6 if torque is jumps else 1e-8)  # a step in time over a jump errs, too
-    np.testing.assert_allclose(found["work"], other["work"], rtol=1e-6, atol=1e-6)
-    _check_that_neighbours_do_not_matter(call, found)
+@pytest.mark.parametrize("torque", [wave, jumps, of_t_and_omega])
+def test_many_motions_are_those_of_one_at_a_time(torque):
+    call = {"torque": torque, "t_end": 1.5, "rtol": 1e-9}
+    designs = drawn(cases(8, 60, 300), seed=7)
+    found = dx.simulate(**call, **designs)
+    usual = []
+    for row in range(len(designs["AB"])):
+        one = {n: float(v[row]) if isinstance(v, np.ndarray) else v for n, v in designs.items()}
+        alone = dx.simulate(times=found["t"], **call, **one)
+        assert found["status"][row] == alone["status"]
+        for name in ("theta", "omega"):
+            off = np.abs(found[name][row, : len(alone["t"])] - alone[name]).max()
+            assert off < 1e-5 * max(np.abs(alone[name]).max(), 1.0)
+            usual.append(off)
+    assert np.median(usual) < (1e-6 if torque is jumps else 1e-8)  # a step in time over a jump errs, too
+    _check_that_neighbours_do_not_matter({**call, **designs}, found)
 
 
 def _check_that_neighbours_do_not_matter(call, found):
-    some = slice(3, 40, 5)
+    some = slice(1, 40, 3)
     fewer = {n: v[some] if isinstance(v, np.ndarray) else v for n, v in call.items()}
     for threads in (1, 3):
         part = dx.simulate(threads=threads, **fewer)
@@ -110,12 +98,13 @@ def test_machine_code_has_the_values_of_plain_python():
     law[:, state.KERNEL], law[:, state.THETA0] = kernel.code.address, 0.5
     law[:, state.FIRST], law[:, state.LAST] = (-math.inf, -1000.0), (math.inf, 1000.0)  # over angles, in time
     law[:, state.TORQUE], law[:, state.TORQUE + 1] = state.FUNCTION, torque.address
-    times, how = np.array([0.0, 1e-3, 0.3, 2.0]), np.array([1e-10, 2.0, 1000.0])
+    times, how = np.array([0.0, 1e-3, 0.3, 2.0]), np.array([1e-10, 2.0, 1000.0, 1.0])
+    nothing = np.empty((2, 0, 3)), np.empty(0), np.empty((2, 0, 15))
     answers = []
     for run in (motions(), designs):
         outs = np.zeros((2, 3, 4)), np.full(2, -1, np.int8), np.empty((2, 4))
         with np.errstate(all="ignore"):  # the change of the first torques is from whatever the room had
-            run(law, data, times, how, TABLE, nodes.table(), *outs)
+            run(law.copy(), data, *nothing, times, how, TABLE, nodes.table(), *outs)
         answers.append(outs[0])
         assert outs[1].tolist() == [0, 0]
         assert outs[2][:, 0].tolist() == [2.0, 2.0]

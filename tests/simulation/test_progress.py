@@ -21,9 +21,9 @@ def test_long_simulations_tell_what_is_done(kind, monkeypatch):
 
     monkeypatch.setattr("desaxe.simulation.rows.progress_bar", recorded)
     monkeypatch.setattr("desaxe.simulation.rows.LARGE", 20)
-    monkeypatch.setattr("desaxe.simulation.rows.LONGEST_BLOCK", 8)
-    torque = 1.0 if kind == "many" else dx.over_omega([0.0, 50.0], [1.0, 0.0])
-    dx.simulate(torque=torque, t_end=0.01, **DESIGN)
+    monkeypatch.setattr("desaxe.simulation.rows.PART", 8)
+    torque, more = 1.0, {} if kind == "many" else {"wrt": "AB"}
+    dx.simulate(torque=torque, t_end=0.01, **more, **DESIGN)
     done = [told[0] for told in seen]
     assert seen[0] == (0, 24, "motions")
     assert len(done) > 2

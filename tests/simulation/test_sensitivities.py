@@ -9,8 +9,8 @@ import pytest
 import desaxe as dx
 from tests.effort import cases
 from tests.motions import true_slopes
-from tests.simulation.energy.test_energy import MACHINE
-from tests.simulation.energy.test_energy import drawn as energy_designs
+from tests.simulation.test_loads import MACHINE
+from tests.simulation.test_loads import drawn as random_designs
 
 PRESS = {
     "AB": 0.14, "BC": 0.31, "ec": 0.06, "m_crank": 0.7637, "m_rod": 1.559464, "m_slider": 1.95025,
@@ -223,7 +223,7 @@ def test_a_limit_angle_and_when_it_is_reached(omega_start, mu):
 
 @pytest.mark.sampled
 def test_random_machines_up_to_a_limit_angle():
-    designs, wrt = energy_designs(cases(60, 200, 1_000), 8), ["AB", "ec", "m_slider", "theta0", "torque"]
+    designs, wrt = random_designs(cases(60, 200, 1_000), 8), ["AB", "ec", "m_slider", "theta0", "torque"]
     call = {"t_end": 0.8, "times": [0.0]}
     limit = np.flatnonzero(dx.simulate(**call, **designs)["status"] == 2)
     assert limit.size >= 5

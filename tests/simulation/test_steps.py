@@ -6,7 +6,6 @@ import pytest
 import desaxe as dx
 from tests.effort import cases
 from tests.motions import true_end
-from tests.simulation.by_time import by_time
 
 ISSUE = {
     "AB": 0.11988839743156843, "BC": 0.32893073102304915, "ec": 0.0061792077930540226, "m_crank": 0.5,
@@ -65,7 +64,7 @@ def test_an_unusual_energy_residual_ends_the_message(monkeypatch):
     each = dx.simulate(t_end=0.2, rtol=1e-3, **two)
     assert "in 2 of 2 designs: repeat with rtol" in each["message"]
     some = designs(3, seed=4) | {"m_slider": [1.0, 2.0, np.nan]}
-    many = by_time(t_end=0.2, rtol=1e-3, **some)
+    many = dx.simulate(t_end=0.2, rtol=1e-3, **some)
     assert many["status"].tolist() == [0, 0, 6]
     worst = f"{np.nanmax(many['energy_residual']):.2g}"
     assert f"; energy_residual {worst} at most, in 2 of 3 designs: repeat with rtol" in many["message"]

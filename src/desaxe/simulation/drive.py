@@ -17,7 +17,7 @@ from ..loads.angles import zero_of
 from ..loads.arguments import by_position
 from ..loads.function import FunctionOverTheta
 from ..loads.load import Load, OverTheta, OverY, TableOverTheta
-from ..loads.motors import Kloss, Motor, OverOmega
+from ..loads.motors import Motor, OverOmega
 from ..loads.table import polynomial
 from ..mechanism.closed import TURN
 from ..mechanism.closed.angles import dead_centres
@@ -25,8 +25,7 @@ from ..mechanism.messages import listed, named
 from ..support.checks import real_number
 from ..support.deadline import Deadline
 from ..support.shown import shown
-from .loops.state import CONSTANT, KLOSS
-from .pieces import Sheet, meeting_angles, sheet_over_Y, table_sheet
+from .pieces import compiles, meeting_angles
 from .torque_derivative import TorqueDerivative
 
 Array = NDArray[np.float64]
@@ -57,7 +56,7 @@ class Curve(ABC):
 
     knots: tuple[float, ...] = ()  # speeds at which pieces meet
     depends_on_time = False
-    closed_form: tuple[float, ...] | None = None  # one piece for compiled loops (see `newton.piece`)
+    form: Any = None  # numbers, a table or a motor, which compiled loops know
 
     @abstractmethod
     def at(self, t: Any, theta: Any, omega: Any) -> Any:
@@ -79,10 +78,6 @@ class Curve(ABC):
         """The angles of one period at which pieces meet, and that period [rad]."""
         return []
 
-    def sheet(self, lengths: tuple[float, ...], branch: int, arc: tuple[float, float]) -> Sheet | None:
-        """All pieces for compiled loops; None where they have none. arc: its limit angles."""
-        return None
-
     def moves(self, theta: float) -> Mapping[str, float]:
         """By how much inputs move a kink at an angle, where that is not the design's to say."""
         return {}
@@ -95,7 +90,7 @@ class ConstantCurve(Curve):
     """A number."""
 
     def __init__(self, value: float) -> None:
-        self.value, self.closed_form = value, (CONSTANT, value)
+        self.value, self.form = value, np.array([value])
 
     def at(self, t: Any, theta: Any, omega: Any) -> Any:
         """The number."""
@@ -111,9 +106,7 @@ class MotorCurve(Curve):
 
     def __init__(self, motor: Motor, piece: int | None = None) -> None:
         self.motor, self.piece, self.knots, self.numbers = motor, piece, motor.knots, motor.numbers
-        if isinstance(motor, Kloss):
-            most, slip, speed, gear = map(float, self.numbers.values())
-            self.closed_form = KLOSS, gear * copysign(most, speed), slip, speed, gear
+        self.form = motor
 
     def at(self, t: Any, theta: Any, omega: Any) -> Any:
         """The torque."""
@@ -128,10 +121,6 @@ class MotorCurve(Curve):
             value, slope = polynomial(table.rows[self.piece], omega - table.origin(self.piece))
         return Slopes(value, 0.0, slope)
 
-    def sheet(self, lengths: tuple[float, ...], branch: int, arc: tuple[float, float]) -> Sheet | None:
-        """The pieces of a table over the speed."""
-        return table_sheet(self.motor) if isinstance(self.motor, OverOmega) else None
-
     def ahead(self, theta: float, omega: float, direction: float, growing: float = 1.0) -> Curve:
         """The piece of the table above or below a speed."""
         if not isinstance(self.motor, OverOmega):
@@ -144,7 +133,7 @@ class AngleCurve(Curve):
     """A load over the crank angle."""
 
     def __init__(self, load: Any) -> None:
-        self.load = load
+        self.load, self.form = load, load if isinstance(load, TableOverTheta) else None
 
     def at(self, t: Any, theta: Any, omega: Any) -> Any:
         """The load."""
@@ -170,10 +159,6 @@ class AngleCurve(Curve):
             high = min(node for node in nodes if node > angle)
             return BoundedCurve(load, low, nextafter(high, -inf))
         return self
-
-    def sheet(self, lengths: tuple[float, ...], branch: int, arc: tuple[float, float]) -> Sheet | None:
-        """The pieces of a table."""
-        return table_sheet(self.load) if isinstance(self.load, TableOverTheta) else None
 
     def kinks(self, lengths: tuple[float, ...], branch: int) -> list[tuple[float, float]]:
         """All knots of a table: a panel cannot resolve a function over one, however smooth it is there."""
@@ -230,6 +215,7 @@ class PositionCurve(Curve):
     def stand(self, design: SliderDesign, lengths: tuple[float, ...], branch: int) -> None:
         """Stand in a design; ValueError where it has not the dead centre that a load is measured from."""
         self.design, self.zero = design, _zero_in(self.load, lengths, branch)
+        self.form = self.load if compiles(self.load, *lengths[1:]) else None
 
     def along(self, theta: Any) -> tuple[Any, Any]:
         """The position or distance at an angle, and the slope of Y."""
@@ -258,15 +244,6 @@ class PositionCurve(Curve):
         found = PositionCurve(self.load, int(self.load.piece(float(place), float(slope * direction))))
         found.design, found.zero = self.design, self.zero
         return found
-
-    def sheet(self, lengths: tuple[float, ...], branch: int, arc: tuple[float, float]) -> Sheet | None:
-        """The pieces between the angles at which they meet; between limit angles of their arc."""
-        _, AB, BC = lengths
-        if self.load.centre == "Y_inner" and AB > BC:
-            return None  # the slider passes the centre both ways
-        assert self.design is not None
-        sides, slider = [np.array([x]) for x in lengths], self.design.slider
-        return sheet_over_Y(self.load, sides, branch, np.array([arc]), lambda theta: slider(theta)[::2])
 
     def kinks(self, lengths: tuple[float, ...], branch: int) -> list[tuple[float, float]]:
         """The angles at the table's positions, and the dead centres where another table holds behind them."""

@@ -37,11 +37,6 @@ class Mark(NamedTuple):
     every: float = 0.0
     status: int = NEVER
 
-    @property
-    def cuts(self) -> bool:
-        """True where a load has a kink, or the motion ends; limit angles are detected in the coordinate."""
-        return self.kind == KINK or self.kind in ("angle", "no inertia")
-
 
 def marks_of(model: Model, until: Sequence[float]) -> list[Mark]:
     """All angles to watch for."""
@@ -67,18 +62,19 @@ def passages(model: Model, marks: Sequence[Mark], record: "Record") -> list[Even
     way = np.sign(b - a)
     cut = record.ends[:, 0] == CUT_AT_ANGLE
     left = np.concatenate([[True], cut[:-1]])  # an angle that the panel starts from is behind it
-    rows, angles, which = [], [], []
+    passed = list[tuple[int, float, str]]()
     for mark in centres:
         gap = ((mark.angle - a) * way) % TURN
         gap += np.where((gap <= np.where(left, NEAR, 0.0)) | (way == 0.0), TURN, 0.0)
-        room = np.abs(b - a) + np.where(cut, NEAR, 0.0)
-        for k in np.flatnonzero(gap <= room).tolist():
-            for gone in np.arange(gap[k], room[k], TURN).tolist() or [float(gap[k])]:
-                reached = mark.angle + TURN * round((a[k] + way[k] * gone - mark.angle) / TURN)
-                rows, angles, which = [*rows, k], [*angles, reached], [*which, mark.which]
-    if not rows:
+        reach = np.abs(b - a) + np.where(cut, NEAR, 0.0)
+        for k in np.flatnonzero(gap <= reach).tolist():
+            for gone in gap[k] + TURN * np.arange(1.0 + (reach[k] - gap[k]) // TURN):
+                turns = round((a[k] + way[k] * gone - mark.angle) / TURN)
+                passed.append((k, mark.angle + TURN * turns, mark.which))
+    if not passed:
         return []
-    index, values = np.array(rows), np.array([model.coordinate.q(angle) for angle in angles])
+    index, angles, which = (np.array(column) for column in zip(*passed, strict=True))
+    values = np.array([model.coordinate.q(angle) for angle in angles.tolist()])
     start, series = record.y[index, :W], record.series[index, :W]
 
     def state(s: Array) -> Array:
@@ -86,7 +82,9 @@ def passages(model: Model, marks: Sequence[Mark], record: "Record") -> list[Even
         return start + moved
 
     h = record.heads[index, 1]
-    end = np.where(h > 0.0, (record.heads[index, 6] - record.heads[index, 0]) / np.where(h > 0.0, h, 1.0), 0.0)
+    end = np.where(
+        h > 0.0, (record.heads[index, 6] - record.heads[index, 0]) / np.where(h > 0.0, h, 1.0), 0.0
+    )
     first, last = start[:, Q] - values, state(end)[:, Q] - values
     s = roots(lambda s: state(s)[:, Q] - values, np.zeros(index.size), end, first, last)
     s = np.where(first * last < 0.0, s, np.where(np.abs(first) < np.abs(last), 0.0, end))
@@ -96,7 +94,7 @@ def passages(model: Model, marks: Sequence[Mark], record: "Record") -> list[Even
     columns = (instants, model.coordinate.theta(values), now.omega)
     return [
         Event("dead centre", t, angle, omega, name)
-        for t, angle, omega, name in zip(*(c.tolist() for c in map(np.asarray, columns)), which, strict=True)
+        for t, angle, omega, name in zip(*(np.asarray(c).tolist() for c in (*columns, which)), strict=True)
     ]
 
 

@@ -49,7 +49,7 @@ def result_of(
     result = Simulation({"t": t, **motion})
     if names:
         result |= evaluate(list(names), **motion, **given)
-    told = told_of(ended.residual, ended.rounded, ended.rtol, ended.method)
+    told = told_of(ended.residual, ended.rounded, ended.rtol)
     return Simulation(
         result, events=ended.events, status=ended.status, message=ended.message + told,
         energy_residual=ended.residual, work=ended.work, t_last=ended.t, method=ended.method,
@@ -66,7 +66,7 @@ def integrated(run: March, names: Sequence[str], times: Any, given: Mapping[str,
     """The result of a motion by panels of time."""
     t = instants_of(times, run.t)
     motion = Motion(run)
-    theta, omega, alpha = motion.histories(t, run.laws)
+    theta, omega, alpha = motion.histories(t, run.law_of)
     curves = () if "sliders" in given else zip(FORCES, run.model.drive[1:], strict=True)
     loads = {name: _along(curve, t, theta, omega) for name, curve in curves}
     residual = energy_residual(run)
@@ -82,6 +82,7 @@ class Motion:
             run.model, run.events, run.status, run.t, run.record,
         )  # fmt: skip
         heads = self.record.heads
+        self.begin = run.start
         self.start, self.h, self.stop = heads[:, 0], heads[:, 1], heads[:, 6]
 
     def at(self, t: Array) -> tuple[NDArray[np.intp], Array]:
@@ -92,16 +93,14 @@ class Motion:
         moved = np.einsum("kt,tik->it", rows, self.record.series[which]) * (s != 0.0)
         return which, self.record.y[which].T + moved
 
-    def histories(self, t: Array, laws: Sequence[Law]) -> tuple[Array, Array, Array]:
-        """Angle, speed and acceleration at instants; laws: of each stretch."""
+    def histories(self, t: Array, law_of: Callable[[int], Law]) -> tuple[Array, Array, Array]:
+        """Angle, speed and acceleration at instants; law_of: a panel."""
         theta, omega = self.states(t)
         which, ends = np.searchsorted(self.stop[:-1], t), self.record.ends
         law = Law(self.model, self.model.drive, *ends[which, 2:].T)
         alpha = np.where(ends[which, 0] == RESTING, 0.0, law.alpha(t, theta, omega))
-        stretch = self.record.stretches[which]
-        met = np.flatnonzero((t == self.start[which]) | (t == self.stop[which]))  # pieces may meet there
-        for k in met.tolist():
-            alpha[k] = laws[stretch[k]].alpha(t[k], theta[k], omega[k])
+        for k in np.flatnonzero((t == self.start[which]) | (t == self.stop[which])).tolist():
+            alpha[k] = law_of(int(which[k])).alpha(t[k], theta[k], omega[k])  # pieces may meet there
         if self._at_event:
             _set_end(self, t, alpha)
         return theta, omega, alpha
@@ -110,6 +109,7 @@ class Motion:
         """Angle and speed at instants."""
         state = state_of(self.model, *self.at(t)[1][:W])
         theta, omega = state.theta.copy(), state.omega.copy()
+        theta[t == 0.0], omega[t == 0.0] = self.begin
         if self._at_event:
             ends = t >= self.t
             theta[ends], omega[ends] = self.events[-1].theta, self.events[-1].omega

@@ -10,12 +10,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiler.llvm.loops import address
 from ..mechanism.messages import named
 from ..support.deadline import Deadline
 from .drive import FunctionCurve
 from .events import (
     JAM,
+    KINK,
     NEVER,
     STANDSTILL,
     Mark,
@@ -31,11 +31,13 @@ from .events import (
 from .law import Law, Resting, State, law_ahead, state_of
 from .loops import march, newton, panels, state
 from .loops.compiled import panels as compiled_panels
-from .loops.cuts import JAMMED, KINK, LIMIT, NO_CUT
+from .loops.cuts import JAMMED, LIMIT, NO_CUT
+from .loops.cuts import KINK as AT_ANGLE
 from .loops.cuts import STANDSTILL as STILL
 from .loops.motions import BESIDE, CROWD, NARROW
 from .model import Model
 from .panel import NODES, TABLE, Panel, basis
+from .pieces import LawNumbers
 from .result import DONE, FAILED, JAMS, REST, Event
 
 Array = NDArray[np.float64]
@@ -58,7 +60,7 @@ class Settings(NamedTuple):
 
 
 class Record(NamedTuple):
-    """Panels one after the other: heads, series, rates at nodes and ends of `loops.march`, q, v, W at the end."""
+    """Panels one after the other, as `loops.march` records them, and q, v and W at the end."""
 
     heads: Array
     series: Array
@@ -84,28 +86,36 @@ class March:
     def __init__(
         self,
         model: Model,
-        y: Array,
+        start: tuple[float, float],
         t_end: float,
         until: tuple[float, ...],
         settings: Settings,
         deadline: Deadline,
     ) -> None:
         self.model, self.t_end, self.settings, self.deadline = model, t_end, settings, deadline
-        self.y, self.status, self.message = y, NEVER, ""
+        self.start, self.status, self.message = start, NEVER, ""
+        v = start[1] * sqrt(model.inertia(start[0]))
+        self.y = np.array([model.coordinate.q(start[0]), v, 0.0])
         self.events: list[Event] = []
         self.steps, self.stills = 0, list[float]()
         self.marks = marks_of(model, until)
-        cuts = [mark for mark in self.marks if mark.cuts or (model.mu and mark.kind == "dead centre")]
-        self.kinks = np.array([(m.angle, m.every or inf, m.status) for m in cuts] or np.empty((0, 3)), float)
-        self.cutting = cuts
         self.error: BaseException | None = None
         self.stops = False
         self.clock = np.zeros(7)
         self.clock[[panels.T_END, panels.SHARP, panels.LEFT]] = t_end, SHARP, 1.0
         self._law: Law = Law(model, model.drive, 1.0)
         self._kept: list[tuple[Array, ...]] = []
-        self.numbers, self.sheets, self.data, self._callbacks = self._in_numbers()
+        self._laws = self._as_numbers()
+        self.numbers = self._laws.law[0]
+        self.cutting = [mark for mark in self.marks if self._cuts(mark)]
+        self.kinks = np.array([(m.angle, m.every or inf, m.status) for m in self.cutting]).reshape(-1, 3)
         self.rows, self.matrix = np.zeros((newton.ROWS, NODES)), np.empty((2 * NODES, 2 * NODES))
+
+    def _cuts(self, mark: Mark) -> bool:
+        """True where the motion ends, or friction or a function has a kink: pieces end where they end."""
+        if mark.kind == KINK:
+            return bool(self.numbers[state.CHOOSE])
+        return mark.kind in ("angle", "no inertia") or (mark.kind == "dead centre" and self.model.mu != 0.0)
 
     @property
     def t(self) -> float:
@@ -170,7 +180,8 @@ class March:
             count[0], heads[0], records[0] = 1.0, self._kept[-1][0][-1], self._kept[-1][1][-1]
         self.error = None
         knots = np.array(self.model.drive.knots, np.float64)
-        known = self.kinks, knots, self.sheets, self.numbers, self.data, TABLE, self.rows, self.matrix
+        pieces = self._laws.sheets[0]
+        known = self.kinks, knots, pieces, self.numbers, self._laws.data[0], TABLE, self.rows, self.matrix
         code = compiled_panels()(self.y, self.clock, self.scales, *known, heads, records, rates, ends, count)
         made = slice(1, 1 + int(count[0]))
         self.steps += made.stop - 1
@@ -207,7 +218,7 @@ class March:
         elif kind == LIMIT:
             limits = [mark for mark in self.marks if mark.kind == "limit"]
             self._end_at(limits[int(row)])
-        elif kind == KINK:
+        elif kind == AT_ANGLE:
             self._end_at(self.cutting[int(row)])
 
     def _end_at(self, mark: Mark) -> None:
@@ -228,33 +239,33 @@ class March:
     @cached_property
     def record(self) -> Record:
         """All panels of the motion, which has ended."""
-        return Record(*map(np.concatenate, zip(*self._kept, strict=True)), self.y)
+        heads, series, rates, ends = map(np.concatenate, zip(*self._kept, strict=True))
+        return Record(heads, series, rates, ends, self.y)
+
+    def law_of(self, k: int) -> Law:
+        """The law of the stretch of a panel, with the pieces that hold in the middle of its first panel."""
+        record = self.record
+        k = int(np.searchsorted(record.stretches, record.stretches[k]))
+        (start, h, stop), series = record.heads[k, [0, 1, 6]], record.series[k]
+        if record.ends[k, 0] == RESTING:
+            return Resting(self.model, self.model.drive)
+        middle = basis(np.array([(stop - start) / h - 1.0 if h > 0.0 else 0.0]), NODES)[:, 0]
+        q, v, _ = (record.y[k] + series @ middle).tolist()
+        direction, side, pressed = record.ends[k, 2:].tolist()
+        drive = self.model.drive.ahead(*state_of(self.model, q, v), direction)
+        return Law(self.model, drive, direction, side, pressed)
 
     @cached_property
-    def laws(self) -> list[Law]:
-        """The law of each stretch, with the pieces that hold in its middle."""
-        record, laws = self.record, []
-        first = np.flatnonzero(np.diff(record.stretches, prepend=-1))
-        start, h, stop = record.heads[first][:, [0, 1, 6]].T
-        x = (stop - start) / np.where(h > 0.0, h, 1.0) - 1.0  # of the middle
-        middles = np.einsum("kij,jk->ki", record.series[first], basis(x, NODES))
-        for k, moved in zip(first.tolist(), middles, strict=True):
-            q, v, _ = record.y[k] + moved
-            direction, side, pressed = record.ends[k, 2:].tolist()
-            if record.ends[k, 0] == RESTING:
-                laws.append(Resting(self.model, self.model.drive))
-                continue
-            theta, omega = state_of(self.model, float(q), float(v))
-            drive = self.model.drive.ahead(theta, omega, direction)
-            laws.append(Law(self.model, drive, direction, side, pressed))
-        return laws
-
-    @property
     def panels(self) -> list[Panel]:
         """The panels of the motion, which has ended."""
-        record, laws = self.record, self.laws
-        rows = zip(record.stretches.tolist(), record.heads.tolist(), record.y, record.series, record.rates, strict=True)
-        return [Panel(laws[n], head[0], head[1], y, series, head[6], rates) for n, head, y, series, rates in rows]
+        record = self.record
+        first = np.flatnonzero(np.diff(record.stretches, prepend=-1)).tolist()
+        laws = [self.law_of(k) for k in first]
+        columns = record.heads.tolist(), record.y, record.series, record.rates
+        rows = zip(record.stretches.tolist(), *columns, strict=True)
+        return [
+            Panel(laws[n], head[0], head[1], y, series, head[6], rates) for n, head, y, series, rates in rows
+        ]
 
     @property
     def law_at_end(self) -> Law:
@@ -360,41 +371,30 @@ class March:
 
     # ---- the law as numbers -------------------------------------------------------------------
 
-    def _in_numbers(self) -> tuple[Array, Array, Array, list[Any]]:
-        """The numbers of the law, the pieces of its loads, the kernel's inputs, and what must live with them."""
-        numbers, model, drive = np.zeros(state.NUMBERS), self.model, self.model.drive
-        numbers[state.HALF : state.TORQUE] = model.coordinate.half, model.coordinate.first, model.coordinate.last
-        callbacks = [self._guarded(self._answer), self._guarded(self._choose)]
-        numbers[state.RUBS], numbers[state.ANSWER] = model.mu != 0.0, _address(callbacks[0])
-        numbers[state.LEANS], numbers[state.MU], numbers[state.TINY] = model.branch, model.mu, 1e-9 * model.values["AB"]
+    def _as_numbers(self) -> LawNumbers:
+        """The law for compiled loops, with functions that answer where it has no closed form."""
+        model, drive = self.model, self.model.drive
+        torque = drive.torque
+        called = torque if isinstance(torque, FunctionCurve) and not torque.follows_the_slider else None
+        closed = called is not None or torque.form is not None
+        closed = closed and drive.F_Y.form is not None and drive.F_X.form is not None
+        flat = {name: np.array([x]) for name, x in {**model.values, "mu": model.mu}.items()}
+        arc = np.array([[model.coordinate.half, model.coordinate.first, model.coordinate.last]])
+        laws = LawNumbers(flat, model.branch, arc, model.family() if closed else None)
+        numbers = laws.law[0]
+        self._callbacks = [self._guarded(self._answer), self._guarded(self._choose)]
+        numbers[state.ANSWER], numbers[state.CHOOSE] = _address(self._callbacks[0]), 0.0
+        if not closed:
+            numbers[state.CHOOSE] = _address(self._callbacks[1])
+        for k, curve in enumerate((torque, drive.F_Y, drive.F_X) if closed else ()):
+            if curve.form is not None:
+                laws.add(k, curve.form)
+        if called:
+            self._callbacks.append(self._guarded(_torques(called)))
+            laws.add_function(0, _address(self._callbacks[2]))
         if any(curve.depends_on_time for curve in drive):
             numbers[state.PROBE] = self.t_end / PROBES
-        closed, sheets = True, [np.empty((0, 1 + 2 * state.SLOTS))]
-        for k, curve in enumerate((drive.torque, drive.F_Y, drive.F_X)):
-            form, first = curve.closed_form, state.TORQUE + k * state.SLOTS
-            sheet = None if form else curve.sheet(model.lengths, model.branch, model.coordinate[:2])
-            if k == 0 and isinstance(curve, FunctionCurve) and not curve.follows_the_slider:
-                callbacks.append(self._guarded(_torques(curve)))
-                form = state.FUNCTION, _address(callbacks[-1])
-            if sheet:
-                numbers[state.SHEETS + 3 * k : state.SHEETS + 3 * k + 3] = (
-                    sum(map(len, sheets)), sheet.rows.shape[1], sheet.period,
-                )  # fmt: skip
-                sheets.append(sheet.rows[0])
-            elif form:
-                numbers[first : first + len(form)] = form
-            else:
-                closed = False
-        data = np.zeros(1)
-        if closed:
-            kernel, data = model.kernel
-            numbers[state.KERNEL] = kernel.code.address
-            if model.mu:
-                guide, inputs = model.guide_kernel
-                numbers[state.CONTACT : state.DRAG] = guide.code.address, address(inputs)
-        else:
-            numbers[state.CHOOSE] = _address(callbacks[1])
-        return numbers, np.concatenate(sheets), data, callbacks
+        return laws
 
     def _guarded(self, work: Callable[[int, int, int], None]) -> Any:
         """A function for the loops; they go on after an error of a load, and stop after all others."""
@@ -417,7 +417,7 @@ class March:
 
     def _choose(self, choice: int, _: int, __: int) -> None:
         """Choose the pieces of loads that compiled loops do not know."""
-        t, theta, omega, direction, growing = _memory(choice, 5).tolist()
+        _, theta, omega, direction, growing = _memory(choice, 5).tolist()
         self._law = Law(self.model, self.model.drive.ahead(theta, omega, direction, growing))
 
     def _answer(self, state_at: int, rows_at: int, slopes: int) -> None:

@@ -14,12 +14,10 @@ from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.names import CENTRES, LENGTHS
 from ..mechanism.program import Variant
-from ..runtime.executor import CompiledKernel
 from ..runtime.kernels import STRUCTURAL_ZEROS
-from ..support.computed import computed_once
 from .coordinate import Coordinate
 from .drive import ConstantCurve, Curve, SliderDesign
-from .loops.compiled import DesignFamily, packed
+from .loops.compiled import DesignFamily
 
 Array = NDArray[np.float64]
 
@@ -102,17 +100,9 @@ class Model(SliderDesign):
         found: tuple[Any, ...] = call(*state.values(), *self._design.values())
         return found
 
-    @computed_once
-    def kernel(self) -> tuple[CompiledKernel, Array]:
-        """The kernel of the compiled loops, and its packed inputs."""
-        kernel = DesignFamily(form_of(self.values), fixed_zeros(self.values)).kernel()
-        return kernel, packed(kernel, {"branch": float(self.branch), **self.values}, 1)[0]
-
-    @computed_once
-    def guide_kernel(self) -> tuple[CompiledKernel, Array]:
-        """The kernel of the contact at the guide for the compiled loops, and its packed inputs."""
-        kernel = DesignFamily(form_of(self.values), fixed_zeros(self.values)).guide()
-        return kernel, packed(kernel, {"branch": float(self.branch), **self.values}, 1)[0]
+    def family(self) -> DesignFamily:
+        """The family of designs that share its kernels of the compiled loops."""
+        return DesignFamily(form_of(self.values), fixed_zeros(self.values))
 
     def still(self, theta: Any) -> Still:
         """Inertia, gravity's torque and Y' at angles, with their slopes."""

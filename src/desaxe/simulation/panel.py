@@ -4,7 +4,7 @@ The rates of q and v are polynomials through their values at the Gauss nodes; q 
 the law says what the rates must be there. `loops.newton` solves for them.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre

@@ -1,21 +1,43 @@
-"""The pieces of loads for compiled loops: rows of where they start, and their numbers for both ways.
+"""The law of designs as numbers for compiled loops, with the pieces of their loads.
 
-The numbers are those of `loops.state.piece`. Over the slider's position pieces lie between the crank angles
-at which they meet.
+Pieces are rows of where they start, and their numbers for both ways (`loops.state.piece`). Over the slider's
+position they lie between the crank angles at which they meet.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiler.llvm.loops import address
+from ..evaluation.evaluate import evaluate
 from ..loads.angles import crossings, zero_of
 from ..loads.load import OverY, TableOverTheta
-from ..loads.motors import OverOmega
+from ..loads.motors import Kloss, OverOmega
 from ..mechanism.closed import TURN
 from ..mechanism.closed.angles import dead_centres
-from .loops.state import OVER_OMEGA, OVER_THETA, OVER_Y, SLOTS
+from ..mechanism.names import LENGTHS
+from .loops.compiled import DesignFamily, packed
+from .loops.state import (
+    CONTACT,
+    CONTACT_DATA,
+    ENERGY,
+    FUNCTION,
+    HALF,
+    KERNEL,
+    KLOSS,
+    LEANS,
+    MU,
+    OVER_OMEGA,
+    OVER_THETA,
+    OVER_Y,
+    RUBS,
+    SHEETS,
+    SLOTS,
+    TINY,
+    TORQUE,
+)
 
 Array = NDArray[np.float64]
 
@@ -37,7 +59,9 @@ def table_sheet(load: TableOverTheta | OverOmega) -> Sheet:
     rows = table.rows[1:] if over_angle else table.rows
     kind, first = (OVER_THETA, 1) if over_angle else (OVER_OMEGA, 0)
     numbers = [(kind, table.origin(k), *row, 0.0) for k, row in enumerate(rows, first)]
-    return _sheet(load.period if isinstance(load, TableOverTheta) else 0.0, np.array([starts]), numbers, numbers)
+    return _sheet(
+        load.period if isinstance(load, TableOverTheta) else 0.0, np.array([starts]), numbers, numbers
+    )
 
 
 def meeting_angles(load: OverY, lengths: Sequence[Array], branch: int) -> Array:
@@ -80,3 +104,76 @@ def _sheet(period: float, starts: Array, forth: Any, back: Any) -> Sheet:
     rows = np.empty((*starts.shape, 1 + 2 * SLOTS))
     rows[..., 0], rows[..., 1 : 1 + SLOTS], rows[..., 1 + SLOTS :] = starts, forth, back
     return Sheet(period, rows)
+
+
+def compiles(load: Any, AB: Any, BC: Any) -> bool:
+    """True for a load that is a list of pieces, or a closed form."""
+    if isinstance(load, OverY):  # past the inner dead centre a long crank takes the slider both ways
+        return load.centre != "Y_inner" or not np.any(AB > BC)
+    return isinstance(load, (TableOverTheta, OverOmega, Kloss))
+
+
+class LawNumbers:
+    """The law of designs for compiled loops: numbers (see `loops.state`), packed inputs, pieces, knots.
+
+    flat     inputs of the designs
+    arcs     half of the arc and limit angles of each
+    family   of their kernel; None where the law has no closed form
+    """
+
+    def __init__(
+        self, flat: Mapping[str, Array], branch: int, arcs: Array, family: DesignFamily | None
+    ) -> None:
+        size, mu = len(arcs), flat["mu"]
+        self.flat, self.branch, self.arcs = flat, branch, arcs[:, 1:]
+        self.law, self.data = np.zeros((size, ENERGY + 1)), np.zeros((size, 1))
+        self.sheets, self.knots = np.empty((size, 0, 1 + 2 * SLOTS)), np.empty(0)
+        self.law[:, HALF:TORQUE], self.law[:, LEANS] = arcs, branch
+        self.law[:, MU], self.law[:, RUBS], self.law[:, TINY] = mu, mu != 0.0, 1e-9 * flat["AB"]
+        if family is None:
+            return
+        inputs = {"branch": float(branch), **dict.fromkeys(("F_X", "F_Y"), np.nan), **flat}
+        kernel = family.kernel()
+        self.data, self.law[:, KERNEL] = packed(kernel, inputs, size), kernel.code.address
+        if mu.any():
+            guide = family.guide()
+            self.contact = packed(guide, inputs, size)
+            self.law[:, CONTACT] = guide.code.address
+            self.law[:, CONTACT_DATA] = address(self.contact) + self.contact.strides[0] * np.arange(size)
+
+    def add_function(self, k: int, start: int) -> None:
+        """Torque or force by a function at an address."""
+        self.law[:, TORQUE + k * SLOTS : TORQUE + k * SLOTS + 2] = FUNCTION, start
+
+    def add(self, k: int, load: Any) -> None:
+        """Torque, F_Y or F_X: numbers, a table or a motor."""
+        law, first = self.law, TORQUE + k * SLOTS
+        if isinstance(load, np.ndarray):
+            law[:, first + 1] = size = load
+        elif isinstance(load, Kloss):
+            most, slip, speed, gear = (self.flat.get(n, np.array([x])) for n, x in load.numbers.items())
+            columns = KLOSS, gear * np.copysign(most, speed), slip, speed, gear
+            law[:, first : first + 5] = np.stack(np.broadcast_arrays(*columns), axis=1)
+            size = most
+        else:
+            sheet = self._sheet(load)
+            rows = np.broadcast_to(sheet.rows, (len(law), *sheet.rows.shape[1:]))
+            size = np.abs(rows[:, :, 3]).max(axis=1)
+            place = SHEETS + 3 * k
+            law[:, place : place + 3] = self.sheets.shape[1], rows.shape[1], sheet.period
+            self.sheets = np.concatenate([self.sheets, rows], axis=1)
+        if k < 2:
+            law[:, ENERGY] = np.maximum(law[:, ENERGY], np.abs(size) * (self.flat["AB"] if k else 1.0))
+
+    def _sheet(self, load: Any) -> Sheet:
+        if isinstance(load, OverY):
+            lengths = [self.flat[name] for name in LENGTHS]
+            return sheet_over_Y(load, lengths, self.branch, self.arcs, self._slider)
+        if isinstance(load, OverOmega):
+            self.knots = np.array(load.knots)
+        return table_sheet(load)
+
+    def _slider(self, theta: Array) -> tuple[Any, Any]:
+        inputs: dict[str, Any] = {name: self.flat[name][:, None] for name in LENGTHS}
+        both = evaluate(["Y", "Y_wrt_theta"], theta=theta, branch=self.branch, **inputs)
+        return both["Y"], both["Y_wrt_theta"]

@@ -1,7 +1,6 @@
 """The request of a simulation, and the motion of one design that answers it."""
 
 from collections.abc import Mapping
-from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -56,9 +55,8 @@ def in_time(
 
     known, loads   its inputs for names, and those that vary with the motion, for derivatives
     """
-    y = np.array([model.coordinate.q(start[0]), start[1] * sqrt(model.inertia(start[0])), 0.0])
     with np.errstate(all="ignore"):  # values beyond every double end the motion with a status
-        run = March(model, y, ask.t_end, ask.until, Settings(ask.rtol, ask.max_steps), ask.deadline)
+        run = March(model, start, ask.t_end, ask.until, Settings(ask.rtol, ask.max_steps), ask.deadline)
         run.to_the_end()
         result = integrated(run, ask.names, times, known)
     if ask.wrt:

@@ -10,7 +10,7 @@ from .march import March
 from .result import LIMIT
 
 # The usual residual, as a share of rtol: the median of many motions.
-USUAL = {"energy": 1e-3, "panels": 2e-4}
+USUAL = 2e-4
 ROUNDED = 2e-17  # of the largest energy in a step: what rounding alone makes
 TOLD = 100.0  # times the usual
 TELLS = "; energy_residual "
@@ -37,16 +37,15 @@ def energy_residual(run: March) -> tuple[float, float]:
     return residual / scale, ROUNDED * (len(work) - 1) * (1.0 + float(np.abs(energy).max()) / scale)
 
 
-def told_of(residual: Any, rounded: Any, rtol: float, method: Any = "panels") -> str:
+def told_of(residual: Any, rounded: Any, rtol: float) -> str:
     """The end of a message: the largest of the residuals that are unusual at this rtol; "" if none is.
 
-    residual, rounded, method   of one motion or, as arrays, of many; NaN where there is none
+    residual, rounded   of one motion or, as arrays, of many; NaN where there is none
     """
     if rtol <= LEAST_RTOL:
         return ""
     several = np.atleast_1d(residual)
-    usual = np.array([USUAL[way] for way in np.atleast_1d(method).tolist()])
-    unusual = several > TOLD * (usual * rtol + np.atleast_1d(rounded))
+    unusual = several > TOLD * (USUAL * rtol + np.atleast_1d(rounded))
     if not unusual.any():
         return ""
     count = f" at most, in {unusual.sum()} of {several.size} designs" if np.ndim(residual) else ""

@@ -10,35 +10,35 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiler.llvm.loops import address
 from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..evaluation.evaluate import evaluate
 from ..loads.angles import zero_of
 from ..loads.arguments import arguments_of
-from ..loads.load import Load, OverY, TableOverTheta
-from ..loads.motors import Kloss, Motor
+from ..loads.load import Load, OverY
+from ..loads.motors import Motor
 from ..mechanism.closed import TURN
 from ..mechanism.closed.angles import dead_centres
 from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.inputs import LEAST, Input
-from ..mechanism.names import CENTRES, LENGTHS, LOADS
+from ..mechanism.names import CENTRES, LENGTHS, LOADS, MASSES
 from ..runtime.threads import run_parts
 from ..support.deadline import Deadline
 from ..support.interrupts import stopped_early
 from ..support.progress import Portions, progress_bar
-from .checks import TIME_AND_CRANK, follows_the_slider, grows
+from .checks import SMALL, TIME_AND_CRANK, follows_the_slider, grows
 from .coordinate import arc_around, inside
+from .events import NEVER
 from .history import PANELS
 from .loops import nodes, state
-from .loops.compiled import DesignFamily, motions, packed
+from .loops.compiled import DesignFamily, motions
 from .loops.motions import NOT_HERE
 from .loops.torque import compiled
 from .model import fixed_zeros, form_of
 from .panel import TABLE
-from .pieces import Sheet, meeting_angles, sheet_over_Y, table_sheet
+from .pieces import LawNumbers, compiles
 from .request import Ask, one_motion
 from .residual import TELLS, told_of
-from .result import DONE, NO_START, SENSITIVITIES, WORDS, Simulation
+from .result import DONE, NO_INERTIA, NO_START, SENSITIVITIES, WORDS, Simulation
 
 Array = NDArray[np.float64]
 DRIVE = ("torque", "F_Y", "F_X")
@@ -62,7 +62,7 @@ def is_array(value: Any) -> bool:
 
 
 class Answers:
-    """The answers of all designs: histories, numbers, statuses and ways, a row each.
+    """The answers of all designs: histories, numbers, statuses, a row each.
 
     rounded   the residual of rounding, infinite where nothing is said of a residual
     without   designs of which a derivative does not exist
@@ -74,7 +74,7 @@ class Answers:
         self.size, self.t, self.status = size, t, status
         self.histories = {n: np.full((size, t.size), nan) for n in (*MOTION, *ask.names, *along)}
         self.numbers = {name: np.full(size, nan) for name in (*NUMBERS, *ends)}
-        self.ways, self.rounded = np.full(size, "", "U6"), np.full(size, inf)
+        self.done, self.rounded = np.zeros(size, bool), np.full(size, inf)
         self.without: list[int] = []
 
     def put(self, row: int, result: Simulation) -> None:
@@ -82,16 +82,16 @@ class Answers:
         count = len(result["t"])
         for name, history in self.histories.items():
             history[row, :count] = result[name]
-        self.status[row], self.ways[row] = result["status"], result["method"]
+        self.status[row], self.done[row] = result["status"], True
         self.rounded[row] = 0.0 if TELLS in result["message"] else inf
         if SENSITIVITIES in result["message"]:
             self.without.append(row)
         for name, column in self.numbers.items():
             column[row] = result[name]
 
-    def told(self, way: str, rows: Any, numbers: Array) -> None:
+    def told(self, rows: Any, numbers: Array) -> None:
         """Take over the numbers of designs that went together."""
-        self.ways[rows], self.rounded[rows] = way, numbers[rows, 3]
+        self.done[rows], self.rounded[rows] = True, numbers[rows, 3]
         for name, column in zip(NUMBERS, numbers.T, strict=False):
             self.numbers[name][rows] = column[rows]
 
@@ -99,13 +99,12 @@ class Answers:
         """The result in the shape of the designs."""
         histories = {n: rows.reshape(*shape, self.t.size) for n, rows in self.histories.items()}
         result = Simulation({"t": self.t, **histories})
-        ways = np.where(self.ways == "", PANELS, self.ways)
-        told = told_of(self.numbers["energy_residual"], self.rounded, rtol, ways)
+        told = told_of(self.numbers["energy_residual"], self.rounded, rtol)
         if self.without:
             count = f"{len(self.without)} of {self.size} designs"
             told += f"{SENSITIVITIES}NaN in {count}, where there are none"
         result["status"], result["message"] = self.status.reshape(shape), message(self.status) + told
-        result["method"] = self.ways.reshape(shape)
+        result["method"] = np.full(shape, PANELS)
         return Simulation({**result, **{n: values.reshape(shape) for n, values in self.numbers.items()}})
 
 
@@ -123,9 +122,9 @@ def simulate_rows(
         if isinstance(load, OverY):
             status[np.isnan(zero_of(load, [flat[n] for n in LENGTHS], ask.branch))] = NO_START
     answers = Answers(status.size, t, ask, status)
-    if not ask.wrt and all(_in_loops(name, value) for name, value in varying.items()):
+    if not ask.wrt and all(_in_loops(name, value, flat) for name, value in varying.items()):
         _together(ask, varying, arrays, flat, arcs, answers, threads)
-    done = np.flatnonzero(answers.ways != "")
+    done = np.flatnonzero(answers.done)
     if ask.names and done.size:
         state = {n: answers.histories[n][done] for n in MOTION}
         inputs = {n: column[done, None] for n, column in flat.items() if n not in (*STARTS, *motor)}
@@ -137,10 +136,10 @@ def simulate_rows(
     return answers.result(shape, ask.rtol)
 
 
-def _in_loops(name: str, load: Any) -> bool:
-    """True for what compiled loops follow: tables, motors, and functions of t, theta and omega as a torque."""
+def _in_loops(name: str, load: Any, flat: Mapping[str, Array]) -> bool:
+    """True for what compiled loops follow: tables, motors, and a torque of t, theta and omega."""
     if isinstance(load, (Load, Motor)):
-        return isinstance(load, (TableOverTheta, OverY, Motor))
+        return compiles(load, flat["AB"], flat["BC"])
     return name == "torque" and not follows_the_slider(load)
 
 
@@ -154,7 +153,7 @@ def _one_by_one(
 ) -> None:
     """The motions that nothing has answered yet."""
     motor = starts["torque"] if isinstance(starts["torque"], Motor) else None
-    rows = np.flatnonzero((answers.status != NO_START) & (answers.ways == "")).tolist()
+    rows = np.flatnonzero((answers.status != NO_START) & ~answers.done).tolist()
     if not rows:
         return
     with progress_bar(unit="designs") as watch:
@@ -187,101 +186,59 @@ def _together(
     flat, arcs = {name: column[left] for name, column in flat.items()}, arcs[left]
     scalars = {n: float(array) if array.ndim == 0 else array for n, array in arrays.items()}
     family = DesignFamily(form_of(flat), fixed_zeros({**dict.fromkeys(LOADS, nan), **scalars}))
-    kernel = family.kernel()
-    inputs = {"branch": float(ask.branch), **dict.fromkeys(("F_X", "F_Y"), nan), **flat}
-    data = packed(kernel, inputs, left.size)
-    law = np.zeros((left.size, state.ENERGY + 1))
-    law[:, state.KERNEL], law[:, state.HALF : state.TORQUE] = kernel.code.address, arcs
-    law[:, state.LEANS], law[:, state.MU], law[:, state.RUBS] = ask.branch, flat["mu"], flat["mu"] != 0.0
-    law[:, state.TINY] = 1e-9 * flat["AB"]
-    law[:, state.THETA0], law[:, state.OMEGA_START] = flat["theta0"], flat["omega_start"]
-    if flat["mu"].any():
-        guide = family.guide()
-        contact = packed(guide, inputs, left.size)
-        law[:, state.CONTACT] = guide.code.address
-        law[:, state.CONTACT_DATA] = address(contact) + contact.strides[0] * np.arange(left.size)
-    pieces = PiecesOfDesigns(flat, ask.branch, arcs, law)
-    codes = [pieces.add(k, varying.get(name, flat.get(name))) for k, name in enumerate(DRIVE)]
-    kinks = pieces.kinks(ask.until)
-    timed = codes[0] is not None and "t" in arguments_of("torque", varying["torque"], TIME_AND_CRANK)
+    laws = LawNumbers(flat, ask.branch, arcs, family)
+    laws.law[:, state.THETA0], laws.law[:, state.OMEGA_START] = flat["theta0"], flat["omega_start"]
+    code, torque = None, varying.get("torque", Motor)
+    if not isinstance(torque, (Load, Motor, type)):
+        code = compiled(torque)
+        laws.add_function(0, code.address)
+    for k, name in enumerate(DRIVE):
+        if k or not code:
+            laws.add(k, varying.get(name, flat.get(name)))
+    timed = code is not None and "t" in arguments_of("torque", torque, TIME_AND_CRANK)
     how = np.array([ask.rtol, ask.t_end, ask.max_steps, timed], float)
-    outs = np.empty((left.size, len(MOTION), answers.t.size)), answers.status[left], np.full((left.size, 4), nan)
-    known = law, data, kinks, pieces.sheets
-    _run(known, pieces.knots, answers.t, how, outs, threads, ask.deadline)
-    here = left[outs[1] != NOT_HERE]
+    histories, numbers = np.empty((left.size, len(MOTION), answers.t.size)), np.full((answers.size, 4), nan)
+    status, found = answers.status[left], np.full((left.size, 4), nan)
+    known = laws.law, laws.data, kinks_of(flat, ask.branch, ask.until), laws.sheets
+    _run(known, laws.knots, answers.t, how, (histories, status, found), threads, ask.deadline)
+    there = status != NOT_HERE
+    here, numbers[left] = left[there], found
     for k, name in enumerate(MOTION):
-        answers.histories[name][here] = outs[0][outs[1] != NOT_HERE, k]
-    answers.status[here] = outs[1][outs[1] != NOT_HERE]
-    numbers = np.full((answers.size, 4), nan)
-    numbers[left] = outs[2]
-    answers.told(PANELS, here[answers.status[here] != NO_START], numbers)
+        answers.histories[name][here] = histories[there, k]
+    answers.status[here] = status[there]
+    answers.told(here[status[there] != NO_START], numbers)
 
 
-class PiecesOfDesigns:
-    """The pieces of the loads of designs, and the angles at which they meet, as compiled loops take them."""
+def kinks_of(flat: Mapping[str, Array], branch: int, until: Sequence[float]) -> Array:
+    """The angles at which motions are cut, their periods, and the status of a motion that ends there."""
+    size, lengths = flat["AB"].size, [flat[name] for name in LENGTHS]
+    centres = dead_centres(lengths) if flat["mu"].any() else np.empty((size, 0))
+    ends = np.broadcast_to(np.array(until).reshape(1, -1), (size, len(until)))
+    gone = _vanishing(flat, branch)
+    every = [_marks(centres, TURN, NEVER), _marks(ends, np.inf, DONE), _marks(gone, TURN, NO_INERTIA)]
+    kinks = np.concatenate(every, axis=1)
+    kinks[np.isnan(kinks[:, :, 0])] = -np.inf, np.inf, NEVER
+    return kinks
 
-    def __init__(self, flat: Mapping[str, Array], branch: int, arcs: Array, law: Array) -> None:
-        self.flat, self.branch, self.arcs, self.law = flat, branch, arcs[:, 1:], law
-        self.size, self.knots = len(law), np.empty(0)
-        self.sheets, self.angles = np.empty((self.size, 0, 1 + 2 * state.SLOTS)), [np.empty((self.size, 0, 2))]
 
-    def add(self, k: int, load: Any) -> Any:
-        """Write torque or force into the law; the machine code of a function."""
-        law, first, arm = self.law, state.TORQUE + k * state.SLOTS, self.flat["AB"] if k else 1.0
-        size, code = 0.0, None
-        if isinstance(load, np.ndarray):
-            law[:, first + 1], size = load, load
-        elif isinstance(load, Kloss):
-            most, slip, speed, gear = (self.flat[name] for name in load.numbers)
-            law[:, first : first + 5] = np.stack(
-                [np.full(self.size, state.KLOSS), gear * np.copysign(most, speed), slip, speed, gear], axis=1
-            )
-            size = load.both(self.flat["omega_start"], self.flat)[0]
-        elif isinstance(load, (Load, Motor)):
-            sheet = self._sheet(load)
-            law[:, state.SHEETS + 3 * k : state.SHEETS + 3 * k + 3] = (
-                self.sheets.shape[1], sheet.rows.shape[1], sheet.period,
-            )  # fmt: skip
-            self.sheets = np.concatenate(
-                [self.sheets, np.broadcast_to(sheet.rows, (self.size, *sheet.rows.shape[1:]))], axis=1
-            )
-            size = np.abs(sheet.rows[:, :, 3]).max()
-        else:
-            code = compiled(load)
-            law[:, first], law[:, first + 1] = state.FUNCTION, code.address
-        if k < 2:
-            law[:, state.ENERGY] = np.maximum(law[:, state.ENERGY], np.abs(size) * arm)
-        return code
+def _vanishing(flat: Mapping[str, Array], branch: int) -> Array:
+    """Both sides of the dead centres at which no inertia is left (see `Model.vanishing`)."""
+    light = (flat["I_crank"] == 0.0) & ((flat["m_crank"] == 0.0) | (flat.get("r_crank", 1.0) == 0.0))
+    if not light.any():
+        return np.empty((light.size, 0))
+    angles = dead_centres([flat[name] for name in LENGTHS])
+    theta = np.hstack([angles, np.broadcast_to(TURN * np.arange(16) / 16, (light.size, 16))])
+    names = (*LENGTHS, *MASSES, *CENTRES)
+    inputs: dict[str, Any] = {name: flat[name][:, None] for name in names if name in flat}
+    inertia = evaluate("M_eff", theta=theta, branch=branch, **inputs)
+    least = 1e-12 * np.nanmax(inertia, axis=1, keepdims=True, initial=0.0)
+    gone = np.where((inertia <= least)[:, :4], angles, np.nan)
+    return np.hstack([gone - SMALL, gone + SMALL])
 
-    def _sheet(self, load: Any) -> Sheet:
-        if isinstance(load, Motor):
-            self.knots = np.array(load.knots)
-        elif isinstance(load, TableOverTheta):
-            knots = np.array(load.table.knots)
-            self.angles.append(np.stack(np.broadcast_arrays(knots, load.period), axis=-1)[None])
-        else:
-            lengths = [self.flat[name] for name in LENGTHS]
-            angles = meeting_angles(load, lengths, self.branch)
-            self.angles.append(np.stack(np.broadcast_arrays(angles, TURN), axis=-1))
-            return sheet_over_Y(load, lengths, self.branch, self.arcs, self._slider)
-        return table_sheet(load)
 
-    def _slider(self, theta: Array) -> tuple[Any, Any]:
-        inputs = {name: self.flat[name][:, None] for name in LENGTHS}
-        both = evaluate(["Y", "Y_wrt_theta"], theta=theta, branch=self.branch, **inputs)
-        return both["Y"], both["Y_wrt_theta"]
-
-    def kinks(self, until: Sequence[float]) -> Array:
-        """The angles at which motions are cut, their periods, and the status of a motion that ends there."""
-        if self.flat["mu"].any():
-            centres = dead_centres([self.flat[name] for name in LENGTHS])
-            self.angles.append(np.stack(np.broadcast_arrays(centres, TURN), axis=-1))
-        cuts = [np.broadcast_to(part, (self.size, *part.shape[1:])) for part in self.angles]
-        ends = np.array([(angle, np.inf, DONE) for angle in until]).reshape(-1, 3)
-        every = np.concatenate(cuts, axis=1)
-        every = np.concatenate([every, np.full((*every.shape[:2], 1), -1.0)], axis=2)
-        every[np.isnan(every[:, :, 0])] = -np.inf, np.inf, -1.0
-        return np.concatenate([every, np.broadcast_to(ends, (self.size, *ends.shape))], axis=1)
+def _marks(angles: Array, period: float, status: int) -> Array:
+    """Rows of angles with their period and status."""
+    return np.stack(np.broadcast_arrays(angles, period, float(status)), axis=-1)
 
 
 def arrays_of(

@@ -89,8 +89,7 @@ def simulate(
                      kinetic energy; above 100 times what is usual at this rtol, `message` ends with it and
                      the rtol to repeat with
     work             of torque, loads and friction, gravity not included [J]
-    method           "energy": over the crank angle, where torque and loads are numbers or tables without
-                     friction, and without wrt; else "panels" of time
+    method           "panels" of time: collocation
     t_last           when the motion ends [s]
     solution         function t -> dict of theta and omega, anywhere up to the end
     theta_wrt_<p>, omega_wrt_<p>   for each p of wrt: derivatives of the histories at each instant

@@ -12,7 +12,6 @@ from numpy import empty, int64, nextafter, zeros
 from desaxe.compiler.helpers import mul_add
 from desaxe.compiler.llvm import machine
 from desaxe.compiler.llvm.loops import CompiledLoops, apart
-from desaxe.simulation.energy.loops import pieces
 from desaxe.simulation.loops import picard
 
 WEIGHT, FIRST = 0.3, int64(2)
@@ -105,11 +104,8 @@ def test_arrays_are_contiguous():
 @pytest.mark.parametrize(
     ("function", "kinds", "operations"),
     [
-        (pieces.combined, ("f64[1]", "f64[2]", "f64[1]"), {"fmul", "fadd"}),
-        (pieces.ordered, ("f64[1]", "f64[1]", "f64", "bool", "f64[1]", "f64[1]"), {"fadd"}),
         (picard.integrate, ("f64", "f64", "f64[2]", "i64", "f64[2]", "i64", "i64"), {"fmul", "fmuladd"}),
         (picard.slowness, ("f64", "f64[2]"), {"fdiv", "sqrt"}),
-        (pieces.rates, ("i64", "f64", "f64[1]", "f64[1]", "f64[1]", "f64[1]"), {"fdiv", "sqrt"}),
     ],
     ids=lambda value: getattr(value, "__name__", ""),
 )

@@ -1,9 +1,11 @@
-"""Motions in plain loops, which are compiled: panels of time of one motion, and many motions at once.
+"""Motions in plain loops, which are compiled: pieces, a panel of time, its cut, and again.
 
-advance       panels of time, until something may cut the motion
-newton        one of them: the law at its nodes, and Newton's method
+march         pieces and signs that hold, and panels of one motion up to its cuts
+cuts          the earliest cut of a panel
+panels        the next panel, as long as tolerance and cuts allow
+newton        the law at its nodes, and Newton's method
 motions       motions of designs one after the other, one call for all
-state         their state, where it starts and what becomes of it
+state         their state, where it starts and what becomes of it; the pieces of loads
 panel         panels of the crank angle, also from rest
 picard        what happens at their nodes
 inside_panel  the state inside of one

@@ -6,7 +6,7 @@ cut      part of the panel, kind, row of an angle, coordinate that has a value t
 
 from __future__ import annotations
 
-from math import copysign, floor, inf, pi
+from math import copysign, inf, pi
 from typing import TYPE_CHECKING
 
 from numpy import empty
@@ -95,11 +95,8 @@ def at_angles(y: Any, law: Any, kinks: Any, rows: Any, series: Any, clock: Any, 
     """The next angle, up to a part of the panel, before which the crank turns one way."""
     theta, last = place(y[0], law), value(series[0], y[0], end)
     way, angle = copysign(1.0, last - y[0]), place(last, law)
-    gap, row = next_kink(theta, way, NEAR if clock[LEFT] > 0.0 else 0.0, kinks)
+    gap, row, reached = next_kink(theta, way, NEAR if clock[LEFT] > 0.0 else 0.0, kinks, law)
     if gap <= abs(angle - theta):
-        reached, every = kinks[row, 0], kinks[row, 1]
-        if every < inf:
-            reached += every * floor((theta + way * gap - reached) / every + 0.5)
         q = coordinate(reached, law)
         take(cut, root(series[0], y[0], q, 0.0, end), KINK, row, 0, q)
     if law[HALF] > 0.0:
@@ -162,5 +159,3 @@ def earliest(
         at_knots(knots, rows, table, cut)
     if law[RUBS] > 0.0:
         at_guide(rows, table, cut)
-
-

@@ -10,7 +10,7 @@ ends     kind of the cut at the end of a panel, row of its angle; direction, sig
 
 from __future__ import annotations
 
-from math import copysign, floor, sqrt
+from math import copysign, floor, inf, sqrt
 from typing import TYPE_CHECKING
 
 from numpy import empty, int64
@@ -48,10 +48,13 @@ from .state import (
     CHOOSE,
     DIRECTION,
     DRAG,
+    FIRST,
     HALF,
     INERTIA,
     INERTIA_SLOPE,
+    LAST,
     MU,
+    NEXT,
     OVER_THETA,
     PRESSED,
     RUBS,
@@ -78,7 +81,7 @@ GROWING = int64(6)  # of the choice: numbers that a function takes which chooses
 
 
 def piece_of(load: Any, angle: float, speed: float, way: float, sheets: Any, law: Any) -> None:
-    """The piece of a load that holds at an angle or a speed."""
+    """The piece of a load that holds at an angle or a speed, and the angle at which it ends."""
     first, count = int64(law[SHEETS + 3 * load]), int64(law[SHEETS + 3 * load + 1])
     period, turns, x = law[SHEETS + 3 * load + 2], 0.0, speed
     if count == 0:
@@ -93,6 +96,12 @@ def piece_of(load: Any, angle: float, speed: float, way: float, sheets: Any, law
             low = middle
         else:
             high = middle
+    if period > 0.0:
+        end = sheets[low, 0]
+        if way > 0.0:
+            end = sheets[low + 1, 0] if low + 1 < first + count else sheets[first, 0] + period
+        if law[FIRST] < end + period * turns and end + period * turns < law[LAST]:
+            law[NEXT + load] = end + period * turns
     column = 1 if way > 0.0 else 1 + SLOTS
     for k in range(SLOTS):
         law[TORQUE + SLOTS * load + k] = sheets[low, column + k]
@@ -105,6 +114,8 @@ def pieces(
 ) -> int:
     """The pieces of all loads that hold from a state on; not 0 where a function has raised an exception."""
     law[DIRECTION] = way
+    for load in range(3):
+        law[NEXT + load] = copysign(inf, way)
     if law[CHOOSE] != 0.0:
         choice: Any = empty(5)
         choice[0], choice[1], choice[2], choice[3], choice[4] = t, theta, omega, way, growing
@@ -122,7 +133,7 @@ def acceleration(rows: Any) -> float:
     return float((rows[RATE_V, 0] * sqrt(inertia) - bent) / inertia)
 
 
-def balances(rows: Any) -> Any:
+def balances(rows: Any) -> tuple[float, int]:
     """Of the guide at the first node, with the positive side held: its side, and the sets of forces."""
     side = copysign(1.0, rows[NORMAL, 0])
     share = rows[WEDGE, 0] * side
@@ -131,7 +142,7 @@ def balances(rows: Any) -> Any:
 
 def law_for(
     t: float, y: Any, way: float, fast: float, sheets: Any, law: Any, data: Any, rows: Any, still: Any
-) -> Any:
+) -> tuple[int, int, float, float]:
     """The law for one way of turning: code of an error, sets of forces, acceleration, side of the guide."""
     code, side, solutions, growing = 0, 1.0, 1, 1.0
     for trial in range(2):
@@ -179,9 +190,7 @@ def soon_pressed(t: float, y: Any, clock: Any, law: Any, data: Any, rows: Any, s
     return float(side)
 
 
-def choose(
-    y: Any, clock: Any, knots: Any, sheets: Any, law: Any, data: Any, rows: Any, still: Any
-) -> int:
+def choose(y: Any, clock: Any, knots: Any, sheets: Any, law: Any, data: Any, rows: Any, still: Any) -> int:
     """Choose direction, pieces and signs that hold from a state on: GOES_ON, or why none does."""
     t, fast, starts = clock[T], 0.0, 0
     for k in range(len(knots)):
@@ -283,7 +292,7 @@ def step(
         code = choose(y, clock, knots, sheets, law, data, rows, still)
         if code != GOES_ON:
             return STOPPED if code == 2 else code
-    code = one(y, clock, scales, kinks, law, data, table, rows, matrix, last, before, head, series)
+    code = one(y, clock, scales, kinks, sheets, law, data, table, rows, matrix, last, before, head, series)
     if code != GOES_ON:
         return code
     earliest(y, law, kinks, knots, table, rows, series, clock, cut)
@@ -309,7 +318,7 @@ def step(
 def ends_motion(cut: Any, kinks: Any) -> bool:
     """True where a motion ends at a cut."""
     if cut[KIND] == KINK:
-        return bool(kinks[int64(cut[ROW]), 2] >= 0.0)
+        return bool(cut[ROW] >= 0.0 and kinks[int64(cut[ROW]), 2] >= 0.0)
     return bool(cut[KIND] == LIMIT or cut[KIND] == JAMMED)
 
 

@@ -17,25 +17,22 @@ from numpy import empty, int64, zeros
 
 from .cuts import JAMMED, KIND, KINK, LIMIT, ROW
 from .inside_panel import over_panel
-from .march import CUT, NO_BALANCE, RESTS, TWO_BALANCES, acceleration, choose, step
+from .march import CUT, RESTS, acceleration, choose, step
 from .newton import ANGLE, RATE_V, ROWS, SPEED
 from .panel import by_panel
 from .panels import CHOSEN, GOES_ON, LEFT, NEAR, SHARP, T_END, WISH, T, motion, next_kink, value
-from .picard import MOBILITY
 from .picard import ROWS as PICARD
 from .state import (
     DIRECTION,
     FIRST,
     FUNCTION,
-    INERTIA,
     LAST,
-    OUTPUTS,
+    OMEGA_START,
     OVER_Y,
     RUBS,
     THETA0,
     TORQUE,
     account,
-    at_angle,
     energy_of,
     place,
     start,
@@ -51,16 +48,13 @@ SHARPEST = 3e-11  # of a radian: a limit angle cannot be told better
 NOT_HERE = 7  # a status: what comes next depends on the time
 
 
-def told(status: Any, t: float, steps: Any, y: Any, law: Any, data: Any, sums: Any, numbers: Any) -> Any:
+def told(status: Any, t: float, steps: Any, y: Any, law: Any, sums: Any, numbers: Any) -> Any:
     """The numbers of a motion; the status of its end."""
     residual = sums[4] if status == 2 else sums[3]  # at a limit angle Y has half its digits
     if status < 0:
-        out: Any = empty((OUTPUTS, 1))
-        at_angle(law[THETA0], law, data, out)
         theta = place(y[0], law)
         # a load on a massless slider grows without bound at a limit angle
-        near = min(law[LAST] - theta, theta - law[FIRST]) < 1e-3
-        status = 2 if near else 5 if sums[6] < 1e-8 * out[INERTIA, 0] else 4
+        status = 2 if min(law[LAST] - theta, theta - law[FIRST]) < 1e-3 else 4
     scale = max(sums[1], sums[2])
     numbers[0], numbers[2] = t, y[2]
     if scale > 0.0:
@@ -103,14 +97,14 @@ def tell_at(t: float, q: float, v: float, law: Any, data: Any, history: Any, row
 
 
 def end_of(code: Any, cut: Any, kinks: Any, how: Any) -> Any:
-    """The status of a motion after a panel, or where there is none; -1 where it goes on, -2 where it fails."""
+    """The status of a motion after a panel, or without one; -1 where it goes on, -2 where it fails."""
     if code == RESTS:
         return NOT_HERE if how[3] > 0.0 else 1
-    if code == NO_BALANCE or code == TWO_BALANCES:
+    if code > RESTS and code < CUT:
         return 3
     if code == CUT:
         if cut[KIND] == KINK:
-            return int64(kinks[int64(cut[ROW]), 2])
+            return int64(kinks[int64(cut[ROW]), 2]) if cut[ROW] >= 0.0 else -1
         return 2 if cut[KIND] == LIMIT else 3 if cut[KIND] == JAMMED else -1
     return -1 if code == GOES_ON else -2
 
@@ -120,17 +114,18 @@ def follow(
     history: Any, numbers: Any,
 ) -> Any:  # fmt: skip
     """The motion of one design: its status."""
-    y, new, scales, clock, sums, memory = empty(3), empty(3), zeros(3), zeros(7), zeros(7), zeros(4)
+    y, new, scales, clock, sums, memory = empty(3), empty(3), zeros(3), zeros(7), zeros(6), zeros(4)
     head, last, cut, still, room = zeros(7), zeros(7), zeros(6), empty(32), empty((PICARD, COLUMNS))
     rows, matrix, series, before = zeros((ROWS, 16)), empty((32, 32)), empty((3, 17)), empty((3, 17))
     history[:] = nan
     if not start(law, data, how[1], y, scales):
         return 6
-    scales[0], clock[T_END], clock[SHARP], memory[0], sums[6] = how[0], how[1], SHARPEST, 0.5, inf
+    scales[0], clock[T_END], clock[SHARP], memory[0] = how[0], how[1], SHARPEST, 0.5
     clock[LEFT] = 1.0
-    crowd, begin, row, t, status, steps = 0, inf, 0, 0.0, -1, 0
+    crowd, begin, row, t, steps = 0, inf, 0, 0.0, 0
+    status: Any = -1
     turns = law[FIRST] == -inf and law[RUBS] == 0.0 and len(knots) == 0 and law[TORQUE] != OVER_Y
-    sums[0], sums[2] = energy_of(y, law, data, sums), 0.5 * y[1] * y[1]
+    sums[0], sums[2] = energy_of(y, law, data), 0.5 * y[1] * y[1]
     sums[5] = abs(sums[0])
     while status == -1 and steps < how[2]:
         code, end = GOES_ON, -1.0
@@ -138,9 +133,13 @@ def follow(
             code = choose(y, clock, knots, sheets, law, data, rows, still)
         while code == GOES_ON and row < len(times) and times[row] <= t:
             tell_at(t, y[0], y[1], law, data, history, row)
+            if t == 0.0:
+                history[0, row], history[1, row] = law[THETA0], law[OMEGA_START]
             row += 1
         if turns and code == GOES_ON:
-            gap, kink = next_kink(y[0], law[DIRECTION], NEAR if clock[LEFT] > 0.0 else 0.0, kinks)
+            gap, kink, reached = next_kink(
+                y[0], law[DIRECTION], NEAR if clock[LEFT] > 0.0 else 0.0, kinks, law
+            )
             end = by_panel(t, y, gap, law, data, how, panels, room, memory, new)
             if end > t:
                 end, row = over_panel(
@@ -149,9 +148,8 @@ def follow(
             if end > t:
                 clock[WISH], last[1], clock[LEFT], clock[T] = 0.1 * (end - t), 0.0, 0.0, end
                 if abs(memory[3]) == gap:
-                    clock[LEFT], clock[CHOSEN], status = 1.0, 0.0, int64(kinks[kink, 2])
-                for i in range(16):
-                    sums[6] = min(sums[6], 1.0 / room[MOBILITY, i])
+                    clock[LEFT], clock[CHOSEN], new[0] = 1.0, 0.0, reached
+                    status = int64(kinks[kink, 2]) if kink >= 0 else -1
         if code == GOES_ON and not end > t:
             code = step(
                 y, clock, scales, kinks, knots, sheets, law, data, table, rows, matrix, last, before, head,
@@ -184,7 +182,7 @@ def follow(
             if status == -1 and abs(y[0] - begin) < NARROW and slides(t, y, law, data):
                 break
             crowd, begin = 0, y[0]
-    return told(status, t, steps, y, law, data, sums, numbers)
+    return told(status, t, steps, y, law, sums, numbers)
 
 
 def designs(

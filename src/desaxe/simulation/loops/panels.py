@@ -31,7 +31,7 @@ from .newton import (
     newton,
     product,
 )
-from .state import FUNCTION, HALF, KERNEL, PROBE, TORQUE
+from .state import FUNCTION, HALF, KERNEL, NEXT, PROBE, TORQUE
 
 if TYPE_CHECKING:
     from typing import Any
@@ -99,15 +99,23 @@ def gap_to(kink: Any, theta: float, way: float, least: float) -> float:
     return gap if gap > least else inf
 
 
-def next_kink(theta: float, way: float, least: float, kinks: Any) -> Any:
-    """How far ahead the next angle lies that cuts the motion, and its row: first those that end it."""
-    best, row = inf, 0
+def next_kink(theta: float, way: float, least: float, kinks: Any, law: Any) -> Any:
+    """How far ahead the next angle lies that cuts the motion, its row, and the angle.
+
+    The first is one that ends it; the row is -1 where the piece of a load ends.
+    """
+    best, row, ends, angle = inf, -1, False, 0.0
+    for k in range(3):
+        gap = (law[NEXT + k] - theta) * way
+        if gap > 0.0 and gap < best:
+            best, angle = gap, law[NEXT + k]
     for k in range(len(kinks)):
-        gap = gap_to(kinks[k], theta, way, least)
-        ends, other = kinks[k, 2] >= 0.0, kinks[row, 2] >= 0.0
-        if gap < best - NEAR or (gap < best and ends == other) or (ends and not other and gap < best + NEAR):
-            best, row = gap, k
-    return best, row
+        gap, end = gap_to(kinks[k], theta, way, least), kinks[k, 2] >= 0.0
+        if gap < best - NEAR or (gap < best and ends == end) or (end and not ends and gap < best + NEAR):
+            best, row, ends, angle = gap, k, end, kinks[k, 0]
+            if kinks[k, 1] < inf:
+                angle += kinks[k, 1] * floor((theta + way * gap - angle) / kinks[k, 1] + 0.5)
+    return best, row, angle
 
 
 def until_cut(y: Any, law: Any, kinks: Any, rows: Any) -> float:
@@ -118,7 +126,7 @@ def until_cut(y: Any, law: Any, kinks: Any, rows: Any) -> float:
     if law[HALF] > 0.0:
         shortest = 0.95 * time_over(0.5 * pi - y[0] * way, speed * way, bend * way)
     else:
-        gap, _ = next_kink(theta, way, NEAR, kinks)
+        gap, _, _ = next_kink(theta, way, NEAR, kinks, law)
         if gap < inf:
             shortest = 1.1 * time_over(gap, speed * way, bend * way)
     return shortest if shortest > 0.0 else inf
@@ -191,18 +199,18 @@ def missed(
             s = (other[TIME, i] - t) / h
             off = h * abs(other[RATE_V, i] - value(rates, 0.0, s))
             if off > DEVIATES * TAIL * scales[0] * max(scales[1], abs(state[16 + i])):
-                return max(other[TIME, i] - t - every, 0.5 * (other[TIME, i] - t))
+                return float(max(other[TIME, i] - t - every, 0.5 * (other[TIME, i] - t)))
         k += 16.0
     return 0.0
 
 
 def one(
-    y: Any, clock: Any, scales: Any, kinks: Any, law: Any, data: Any, table: Any, rows: Any, matrix: Any,
-    last: Any, before: Any, head: Any, series: Any,
+    y: Any, clock: Any, scales: Any, kinks: Any, sheets: Any, law: Any, data: Any, table: Any, rows: Any,
+    matrix: Any, last: Any, before: Any, head: Any, series: Any,
 ) -> int:  # fmt: skip
     """The longest panel that the tolerance allows: GOES_ON, FAILED or STOPPED."""
     state: Any = empty(32)
-    t, bends = clock[T], law[HALF] > 0.0 or len(kinks) > 0
+    t, bends = clock[T], law[HALF] > 0.0 or len(kinks) > 0 or len(sheets) > 0
     if bends or last[1] == 0.0 or clock[WISH] == 0.0:
         code = motion(t, y, law, data, rows, state)
         if code == STOP:

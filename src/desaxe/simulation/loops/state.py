@@ -2,13 +2,13 @@
 
 law      numbers: addresses of the executor's kernel (0 where the law has no closed form) and of the function
          that answers otherwise, half of the arc (see `coordinate`), limit angles; TORQUE, FORCE and
-         SIDEWAYS (of F_X): kind and coefficients of the piece (see `closed_form` of a curve), of which
-         FUNCTION has the address of a compiled function of t, theta and omega; under friction 1, addresses of
-         the kernel of the guide and its packed inputs, mu times the signs of Y' and of the direction, the
-         sign of the normal force, the branch, mu; the direction, the sign of Y', and the least Y' that has
-         one; SHEETS: first row, rows and period of the pieces of each load (`pieces`); the address of a
-         function that chooses pieces otherwise; the distance of instants at which a function is compared with
-         the panels; of one of many designs also theta0, omega_start and an energy that the loads suggest
+         SIDEWAYS (of F_X): kind and coefficients of the piece, of which FUNCTION has the address of a
+         compiled function of t, theta and omega; under friction 1, addresses of the kernel of the guide and
+         its packed inputs, mu times the signs of Y' and of the direction, the sign of the normal force, the
+         branch, mu; the direction, the sign of Y', and the least Y' that has one; SHEETS: first row, rows
+         and period of the pieces of each load; the address of a function that chooses pieces otherwise; the
+         distance of instants at which a function is compared with the panels; NEXT: the angles at which the
+         pieces end; of one of many designs theta0, omega_start; an energy that the loads suggest
 data     the packed inputs of the kernel
 """
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 KERNEL, ANSWER, HALF, FIRST, LAST, TORQUE, FORCE, SIDEWAYS = 0, 1, 2, 3, 4, 5, 12, 19
 RUBS, CONTACT, CONTACT_DATA, DRAG, PRESSED, LEANS, MU, DIRECTION, SIDE, TINY = range(26, 36)
-SHEETS, CHOOSE, PROBE, NUMBERS = 36, 45, 46, 47
+SHEETS, CHOOSE, PROBE, NEXT, NUMBERS = 36, 45, 46, 47, 50
 THETA0, OMEGA_START, ENERGY = NUMBERS, NUMBERS + 1, NUMBERS + 2
 SLOTS = 7  # numbers of a piece
 CONSTANT, OVER_THETA, OVER_OMEGA, KLOSS, FUNCTION, OVER_Y = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0  # kinds of pieces
@@ -144,21 +144,19 @@ def start(law: Any, data: Any, t_end: float, y: Any, scales: Any) -> bool:
     return True
 
 
-def energy_of(y: Any, law: Any, data: Any, sums: Any) -> float:
-    """Kinetic and potential energy; sums: see `account`."""
+def energy_of(y: Any, law: Any, data: Any) -> float:
+    """Kinetic and potential energy."""
     out: Any = empty((OUTPUTS, 1))
     at_angle(place(y[0], law), law, data, out)
-    sums[6] = min(sums[6], out[INERTIA, 0])
     return float(0.5 * y[1] * y[1] + out[POTENTIAL, 0])
 
 
 def account(y: Any, new: Any, law: Any, data: Any, sums: Any) -> None:
     """Take a step into account, and make it.
 
-    sums: first energy, work done either way, largest kinetic energy, residual now and before, largest energy,
-    least inertia.
+    sums: first energy, work done either way, largest kinetic energy, residual now and before, largest energy.
     """
-    energy = energy_of(new, law, data, sums)
+    energy = energy_of(new, law, data)
     off = abs(energy - new[2] - sums[0])
     sums[1] += abs(new[2] - y[2])
     sums[2] = max(sums[2], 0.5 * new[1] * new[1])
