@@ -7,9 +7,10 @@ import pytest
 
 import desaxe as dx
 from benchmarks.rows import cranks
-from desaxe.simulation.loops import nodes, picard, state
+from desaxe.simulation.loops import state
 from desaxe.simulation.loops.compiled import DesignFamily, motions, packed
 from desaxe.simulation.loops.motions import designs
+from desaxe.simulation.loops.picard import nodes_table
 from desaxe.simulation.loops.torque import compiled
 from desaxe.simulation.model import form_of
 from desaxe.simulation.panel import TABLE
@@ -82,14 +83,6 @@ def test_the_end_of_a_motion_against_arbs():
     assert abs(found["omega"][0, 0] / omega - 1.0) < 1e-11
 
 
-def test_the_integrals_from_rest_are_exact_for_powers():
-    table, last = nodes.table(), nodes.NODES
-    s = table[:last, picard.PLACE]
-    for power in range(last):
-        energies = (2.0 * s ** (power + 1)) @ table[last:, :last]
-        np.testing.assert_allclose(energies, 2.0 / (power + 2) * s ** (power + 2), rtol=1e-10, atol=1e-16)
-
-
 def test_machine_code_has_the_values_of_plain_python():
     """A crank of 1 kg m^2 under 3 + t N m, from rest; but for fused products."""
     kernel, torque = DesignFamily(form_of({}), (("ec", 0.0),)).kernel(), compiled(lambda t: 3.0 + t)
@@ -104,7 +97,7 @@ def test_machine_code_has_the_values_of_plain_python():
     for run in (motions(), designs):
         outs = np.zeros((2, 3, 4)), np.full(2, -1, np.int8), np.empty((2, 4))
         with np.errstate(all="ignore"):  # the change of the first torques is from whatever the room had
-            run(law.copy(), data, *nothing, times, how, TABLE, nodes.table(), *outs)
+            run(law.copy(), data, *nothing, times, how, TABLE, nodes_table(), *outs)
         answers.append(outs[0])
         assert outs[1].tolist() == [0, 0]
         assert outs[2][:, 0].tolist() == [2.0, 2.0]

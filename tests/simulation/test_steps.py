@@ -55,7 +55,7 @@ def fast(t, theta, omega):
 
 
 def test_an_unusual_energy_residual_ends_the_message(monkeypatch):
-    monkeypatch.setattr("desaxe.simulation.residual.TOLD", 1e-9)
+    monkeypatch.setattr("desaxe.simulation.history.TOLD", 1e-9)
     told = dx.simulate(t_end=1.0, rtol=1e-6, **START | {"torque": fast}, **ISSUE)
     worst = f"{told['energy_residual']:.2g}"
     assert told["message"].startswith(f"reached t_end = 1 s; energy_residual {worst}: repeat with rtol")

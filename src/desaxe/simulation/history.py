@@ -1,77 +1,48 @@
 """From the panels of a motion to its histories: angle, speed, acceleration, quantities, energy."""
 
 from collections.abc import Callable, Mapping, Sequence
-from math import copysign
-from typing import Any, NamedTuple
+from math import copysign, inf
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
+from .checks import LEAST_RTOL
 from .drive import LOADED, ConstantCurve, Curve
 from .events import Q, W
 from .law import Law, state_of
 from .march import RESTING, March
 from .panel import NODES, basis
-from .residual import energy_residual, told_of
-from .result import FAILED, LIMIT, REST, Event, Simulation
+from .result import FAILED, LIMIT, REST, Simulation
 
 Array = NDArray[np.float64]
 FORCES = ("F_X", "F_Y")
 PANELS = "panels"
 SAMPLES = 1001  # instants of the histories by default
+# The usual residual, as a share of rtol: the median of many motions.
+USUAL = 2e-4
+ROUNDED = 2e-17  # of the largest energy in a step: what rounding alone makes
+TOLD = 100.0  # times the usual
+TELLS = "; energy_residual "
 
 
-class Ended(NamedTuple):
-    """The facts of a motion besides its histories.
-
-    residual, rounded   the energy residual, and that of rounding alone
-    states              angle and speed at instants
-    """
-
-    t: float
-    status: int
-    message: str
-    events: list[Event]
-    method: str
-    rtol: float
-    residual: float
-    rounded: float
-    work: float
-    states: Callable[[Array], tuple[Array, Array]]
-
-
-def result_of(
-    t: Array, histories: Sequence[Array], ended: Ended, names: Sequence[str], given: Mapping[str, Any]
-) -> Simulation:
-    """The result of a motion; histories: angle, speed and acceleration; given: its inputs, for `names`."""
-    motion: dict[str, Any] = dict(zip(("theta", "omega", "alpha"), histories, strict=True))
-    result = Simulation({"t": t, **motion})
-    if names:
-        result |= evaluate(list(names), **motion, **given)
-    told = told_of(ended.residual, ended.rounded, ended.rtol)
-    return Simulation(
-        result, events=ended.events, status=ended.status, message=ended.message + told,
-        energy_residual=ended.residual, work=ended.work, t_last=ended.t, method=ended.method,
-        solution=Solution(ended.states, ended.t),
-    )  # fmt: skip
-
-
-def instants_of(times: Any, end: float) -> Array:
-    """The instants of histories, up to the end of a motion."""
-    return np.asarray(np.linspace(0.0, end, SAMPLES) if times is None else times[times <= end])
-
-
-def integrated(run: March, names: Sequence[str], times: Any, given: Mapping[str, Any]) -> Simulation:
-    """The result of a motion by panels of time."""
-    t = instants_of(times, run.t)
+def integrated(run: March, names: Sequence[str], times: Any, inputs: Mapping[str, Any]) -> Simulation:
+    """The result of a motion; inputs: its inputs, for `names`."""
+    t = np.asarray(np.linspace(0.0, run.t, SAMPLES) if times is None else times[times <= run.t])
     motion = Motion(run)
-    theta, omega, alpha = motion.histories(t, run.law_of)
-    curves = () if "sliders" in given else zip(FORCES, run.model.drive[1:], strict=True)
-    loads = {name: _along(curve, t, theta, omega) for name, curve in curves}
-    residual = energy_residual(run)
-    told = run.t, run.status, run.message, run.events, PANELS, run.settings.rtol, *residual, float(run.y[W])
-    return result_of(t, (theta, omega, alpha), Ended(*told, motion.states), names, {**given, **loads})
+    state = dict(zip(("theta", "omega", "alpha"), motion.histories(t, run.law_of), strict=True))
+    result = {"t": t, **state}
+    if names:
+        curves = () if "sliders" in inputs else zip(FORCES, run.model.drive[1:], strict=True)
+        loads = {name: _along(curve, t, state["theta"], state["omega"]) for name, curve in curves}
+        result |= evaluate(list(names), **{**state, **inputs, **loads})
+    residual, rounded = energy_residual(run)
+    told = told_of(residual, rounded, run.settings.rtol)
+    return Simulation(
+        result, events=run.events, status=run.status, message=run.message + told, energy_residual=residual,
+        work=float(run.y[W]), t_last=run.t, method=PANELS, solution=Solution(motion.states, run.t),
+    )  # fmt: skip
 
 
 class Motion:
@@ -161,3 +132,43 @@ def _along(curve: Curve, t: Array, theta: Array, omega: Array) -> Any:
     if isinstance(curve, LOADED):
         return curve.load
     return curve.value if isinstance(curve, ConstantCurve) else curve.at(t, theta, omega)
+
+
+# ---- the energy residual: where it is unusual, step control was deceived ----------------------------
+
+
+def energy_residual(run: March) -> tuple[float, float]:
+    """The energy error relative to the total work or the largest kinetic energy, and that of rounding alone.
+
+    max |kinetic + potential - W - initial| over the ends of panels, with the potential energy of the
+    generated quantities.
+    """
+    ends = np.vstack([run.record.y, run.record.last])
+    q, v, work = ends[: -1 if run.status == LIMIT else None].T  # at a limit Y has half its digits
+    kinetic, potential = 0.5 * v * v, run.model.potential(run.model.coordinate.theta(q))
+    known = np.isfinite(kinetic + potential + work)
+    if not known.any():  # energies beyond every double
+        return inf, 0.0
+    kinetic, potential, work = kinetic[known], potential[known], work[known]
+    energy = kinetic + potential
+    residual = float(np.abs(energy - work - energy[0]).max())
+    scale = max(float(np.abs(np.diff(work)).sum()), float(kinetic.max()))
+    if not scale:
+        return 0.0, inf
+    return residual / scale, ROUNDED * (len(work) - 1) * (1.0 + float(np.abs(energy).max()) / scale)
+
+
+def told_of(residual: Any, rounded: Any, rtol: float) -> str:
+    """The end of a message: the largest of the residuals that are unusual at this rtol; "" if none is.
+
+    residual, rounded   of one motion or, as arrays, of many; NaN where there is none
+    """
+    if rtol <= LEAST_RTOL:
+        return ""
+    several = np.atleast_1d(residual)
+    unusual = several > TOLD * (USUAL * rtol + np.atleast_1d(rounded))
+    if not unusual.any():
+        return ""
+    count = f" at most, in {unusual.sum()} of {several.size} designs" if np.ndim(residual) else ""
+    better = float(f"{max(rtol / TOLD, LEAST_RTOL):.3g}")
+    return f"{TELLS}{several[unusual].max():.2g}{count}: repeat with rtol = {better:g}"

@@ -180,12 +180,6 @@ class Law:
         gain = by_theta - by_omega * omega * steeper - (here.push - still.weight) * steeper
         return q_by_q, 1.0 / (root * slope), gain / root * slope, by_omega / still.inertia
 
-    def motion(self, t: float, q: float, v: float) -> tuple[float, float]:
-        """The first two derivatives of q at an instant, the second near enough to choose a length by."""
-        here = self.here(np.array([t]), np.array([q]), np.array([v]))
-        rates = here.rates
-        return float(rates.q[0]), float(np.ravel(rates.v / (here.root * here.slope))[0])
-
     def guide(self, t: Any, theta: Any, omega: Any, still: Still, push: Any) -> Contact:
         """The contact at the guide, for the way of turning and the sign of Y' that are held."""
         model, drive = self.model, self.drive
@@ -247,16 +241,7 @@ def side_ahead(model: Model, theta: float, direction: float) -> float:
     return copysign(1.0, travel)
 
 
-def law_ahead(model: Model, t: float, theta: float, omega: float, direction: float) -> Law:
-    """The law just ahead of a state for one way of turning; which side of the guide presses is open."""
+def law_at_rest(model: Model, theta: float, direction: float) -> Law:
+    """The law of a crank that starts to turn one way; which side of the guide presses is open."""
     side = side_ahead(model, theta, direction) if model.mu else 0.0
-    law = Law(model, model.drive.ahead(theta, omega, direction), direction, side)
-    if not model.drive.knots:
-        return law
-    alpha = law.contact(t, theta, omega).alpha if law.rubs else law.alpha(t, theta, omega)
-    return law.with_drive(model.drive.ahead(theta, omega, direction, copysign(1.0, alpha)))
-
-
-def rubbing(law: Law, pressed: float) -> Law:
-    """The law with a side of the guide."""
-    return Law(law.model, law.drive, law.direction, law.side, pressed)
+    return Law(model, model.drive.ahead(theta, 0.0, direction, direction), direction, side)

@@ -28,7 +28,7 @@ from .events import (
     time_of,
     words_of,
 )
-from .law import Law, Resting, State, law_ahead, state_of
+from .law import Law, Resting, State, law_at_rest, state_of
 from .loops import march, newton, panels, state
 from .loops.compiled import panels as compiled_panels
 from .loops.cuts import JAMMED, LIMIT, NO_CUT
@@ -304,7 +304,7 @@ class March:
 
         Asked at many instants: a push that is over sooner than that is not noticed.
         """
-        laws = [law_ahead(self.model, self.t, theta, 0.0, direction) for direction in (1.0, -1.0)]
+        laws = [law_at_rest(self.model, theta, direction) for direction in (1.0, -1.0)]
 
         def moves(t: Array) -> Array:
             forth, back = (law.contact(t, theta, 0.0).starts(law.direction) for law in laws)

@@ -28,16 +28,16 @@ from ..support.progress import Portions, progress_bar
 from .checks import SMALL, TIME_AND_CRANK, follows_the_slider, grows
 from .coordinate import arc_around, inside
 from .events import NEVER
-from .history import PANELS
-from .loops import nodes, state
+from .history import PANELS, TELLS, told_of
+from .loops import state
 from .loops.compiled import DesignFamily, motions
 from .loops.motions import NOT_HERE
+from .loops.picard import nodes_table
 from .loops.torque import compiled
 from .model import fixed_zeros, form_of
 from .panel import TABLE
 from .pieces import LawNumbers, compiles
 from .request import Ask, one_motion
-from .residual import TELLS, told_of
 from .result import DONE, NO_INERTIA, NO_START, SENSITIVITIES, WORDS, Simulation
 
 Array = NDArray[np.float64]
@@ -302,7 +302,7 @@ def _run(
     deadline: Deadline,
 ) -> None:
     """Follow blocks of designs; designs are independent, so blocks do not change results."""
-    limits, kernel, tables = how.copy(), motions(), (TABLE, nodes.table())
+    limits, kernel, tables = how.copy(), motions(), (TABLE, nodes_table())
 
     def stop() -> None:  # the loops look at the most steps before each one
         limits[MOST_STEPS] = 0.0

@@ -6,11 +6,8 @@ panels        the next panel, as long as tolerance and cuts allow
 newton        the law at its nodes, and Newton's method
 motions       motions of designs one after the other, one call for all
 state         their state, where it starts and what becomes of it; the pieces of loads
-panel         panels of the crank angle, also from rest
+over_angle    panels of the crank angle
 picard        what happens at their nodes
-inside_panel  the state inside of one
-nodes         their coefficients
 compiled      the machine code of all, and the kernel that it calls
 torque        a torque's function, compiled alone
-values_read   what such a function reads besides its arguments
 """

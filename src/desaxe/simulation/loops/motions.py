@@ -1,10 +1,10 @@
 """Motions of designs, one after the other, in plain loops, which are compiled (`compiled`).
 
-A crank that turns fully without friction goes by panels of the crank angle (`panel`) where its speed lets it;
-all others, and where these fail, by panels of time (`march`).
+A crank that turns fully without friction goes by panels of the crank angle (`over_angle`) where its speed
+lets it; all others, and where these fail, by panels of time (`march`).
 
 how      relative tolerance, t_end, most steps, 1 where the loads know the time
-tables   of panels of time (`newton`) and of the angle (`nodes`)
+tables   of panels of time (`newton`) and of the angle (`picard`)
 history  rows of angles, speeds and accelerations
 """
 
@@ -16,10 +16,9 @@ from typing import TYPE_CHECKING
 from numpy import empty, int64, zeros
 
 from .cuts import JAMMED, KIND, KINK, LIMIT, ROW
-from .inside_panel import over_panel
 from .march import CUT, RESTS, acceleration, choose, step
 from .newton import ANGLE, RATE_V, ROWS, SPEED
-from .panel import by_panel
+from .over_angle import by_panel, over_panel
 from .panels import CHOSEN, GOES_ON, LEFT, NEAR, SHARP, T_END, WISH, T, motion, next_kink, value
 from .picard import ROWS as PICARD
 from .state import (

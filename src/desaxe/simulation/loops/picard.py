@@ -1,6 +1,6 @@
-"""Panels of the crank angle for one motion, in plain loops, which are compiled (`compiled`).
+"""The nodes of a panel of the crank angle, in plain loops, which are compiled (see `over_angle`).
 
-The crank angle is a good variable: the kinetic energy E and the time obey
+The kinetic energy E and the time obey
 
     dE/dtheta = torque(t, theta, omega) + loads - gravity's,    dt/dtheta = 1/omega = sqrt(M_eff / (2 E)),
 
@@ -9,20 +9,19 @@ omega there. Picard's iteration finds them: a sweep asks for the torque at all n
 products with a constant matrix. Loops over the nodes run in the lanes of a vector, each design by itself;
 such short loops are vectors where LLVM does not unroll them before.
 
-From rest E grows like the angle and t like its root: there the nodes lie in s, with theta - theta0 =
-width s^2, of which E/s^2, t and omega are smooth functions. Elsewhere s is the part of the width.
-
-table    of `nodes`: a row for each node, and one from rest
-room     a row for each value at the nodes, in the order below; rates are by s but for the width; the last
-         three are coefficients of series
+table    a row for each node
+room     a row for each value at the nodes, in the order below; the last two are coefficients of series
 """
 
 from __future__ import annotations
 
+from functools import cache
 from math import copysign, inf, nan, sqrt
 from typing import TYPE_CHECKING
 
+import numpy as np
 from numpy import empty, int64
+from numpy.polynomial import legendre
 
 from ...compiler.helpers import mul_add
 from ...compiler.llvm.loops import apart, call
@@ -48,62 +47,71 @@ if TYPE_CHECKING:
 NODES = int64(16)
 MOBILITY, LOAD, WEIGHT, TORQUE, ENERGY, SLOWNESS, RATE, MISS, GAIN, PART = range(10)  # mobility: 1/M_eff
 TIME, ANGLE, SPEED, NOW = 10, 11, 12, 13  # as the torque takes them
-OF_TIME, OF_ENERGY, PLACES, STRETCH, DEPTH, PACE, HEIGHT, ROWS = 14, 15, 16, 17, 18, 19, 20, 21
+HEIGHT, OF_TIME, OF_ENERGY, ROWS = 14, 15, 16, 17
 SERIES, PLACE, SHARE, LAST = 16, 33, 34, 35  # columns of the table, behind the integrals
-USUAL, FROM_REST = int64(0), int64(16)  # rows of the table
 SWEEPS = int64(24)
 PUSHED = TORQUE_OF + 1  # of a law: the address of its torque
+LINE, WIDTH = 8, 40  # numbers of a line of the cache, and of a row of the table
 
 
-def furnish(rest: bool, table: Any, room: Any) -> None:
-    """The nodes: part of the width, its derivative by s, and what makes of E a value of one size."""
-    for i in range(NODES):
-        s = table[i, PLACE]
-        room[PLACES, i] = s * s if rest else s
-        room[STRETCH, i] = 2.0 * s if rest else 1.0
-        room[DEPTH, i] = 1.0 / (s * s) if rest else 1.0
+@cache
+def nodes_table() -> Any:
+    """A row for each Gauss node.
+
+    The integrals of its Lagrange polynomial from 0 to every node, their series, its place in [0, 1], its
+    weight, its weights in the last two terms of a Legendre series (over twice the degree and one). Rows start
+    where lines of the processor's cache do.
+    """
+    x, weights = legendre.leggauss(int(NODES))
+    terms = 0.5 * weights[:, None] * legendre.legvander(x, len(x) - 1)
+    series = np.array([0.5 * legendre.legint(row, lbnd=-1) for row in terms * (2 * np.arange(len(x)) + 1)])
+    others = 0.5 * (x[:, None] + 1.0), 0.5 * weights[:, None], terms[:, -2:]
+    rows = np.hstack([legendre.legval(x, series.T), series, *others])
+    room = np.zeros(rows.shape[0] * WIDTH + LINE)
+    start = -(room.ctypes.data // room.itemsize) % LINE
+    table = room[start : start + rows.shape[0] * WIDTH].reshape(-1, WIDTH)
+    table[:, : rows.shape[1]] = rows
+    return table
 
 
-def still_at_nodes(theta: float, width: float, law: Any, data: Any, room: Any) -> None:
+def still_at_nodes(theta: float, width: float, law: Any, data: Any, table: Any, room: Any) -> None:
     """Inertia, loads and gravity, which depend on the angle alone."""
     found: Any = empty((OUTPUTS + 1, 16))
     for i in range(NODES):
-        room[ANGLE, i] = theta + width * room[PLACES, i]
+        room[ANGLE, i] = theta + width * table[i, PLACE]
         found[OUTPUTS, i] = reduced(room[ANGLE, i])
     quantities(found[OUTPUTS], law, data, found)
     for i in range(NODES):
-        room[MOBILITY, i] = 1.0 / found[INERTIA, i]
-        room[HEIGHT, i] = found[POSITION, i]
+        room[MOBILITY, i], room[HEIGHT, i] = 1.0 / found[INERTIA, i], found[POSITION, i]
         load = piece(law[FORCE:SIDEWAYS], room[ANGLE, i], 0.0, room[HEIGHT, i])[0]
-        room[LOAD, i] = load * found[TRAVEL, i] * room[STRETCH, i]
-        room[WEIGHT, i] = found[GRAVITY, i] * room[STRETCH, i]
+        room[LOAD, i], room[WEIGHT, i] = load * found[TRAVEL, i], found[GRAVITY, i]
 
 
-def integrate(start: float, width: float, table: Any, kind: Any, room: Any, rate: Any, out: Any) -> None:
-    """The integral of a rate from the start of the panel, at every node; kind: the rows of the table."""
+def integrate(start: float, width: float, table: Any, room: Any, rate: Any, out: Any) -> None:
+    """The integral of a rate from the start of the panel, at every node."""
     apart()
     a, b, c, d = room[rate, 0], room[rate, 1], room[rate, 2], room[rate, 3]
     e, f, g, h = room[rate, 4], room[rate, 5], room[rate, 6], room[rate, 7]
     i, j, k, m = room[rate, 8], room[rate, 9], room[rate, 10], room[rate, 11]
     n, o, q, r = room[rate, 12], room[rate, 13], room[rate, 14], room[rate, 15]
     for at in range(NODES):
-        one = mul_add(c, table[kind + 2, at], mul_add(b, table[kind + 1, at], a * table[kind, at]))
-        two = mul_add(f, table[kind + 5, at], mul_add(e, table[kind + 4, at], d * table[kind + 3, at]))
-        three = mul_add(i, table[kind + 8, at], mul_add(h, table[kind + 7, at], g * table[kind + 6, at]))
-        four = mul_add(m, table[kind + 11, at], mul_add(k, table[kind + 10, at], j * table[kind + 9, at]))
-        five = mul_add(q, table[kind + 14, at], mul_add(o, table[kind + 13, at], n * table[kind + 12, at]))
-        whole = (one + two) + (three + four) + mul_add(r, table[kind + 15, at], five)
+        one = mul_add(c, table[2, at], mul_add(b, table[1, at], a * table[0, at]))
+        two = mul_add(f, table[5, at], mul_add(e, table[4, at], d * table[3, at]))
+        three = mul_add(i, table[8, at], mul_add(h, table[7, at], g * table[6, at]))
+        four = mul_add(m, table[11, at], mul_add(k, table[10, at], j * table[9, at]))
+        five = mul_add(q, table[14, at], mul_add(o, table[13, at], n * table[12, at]))
+        whole = (one + two) + (three + four) + mul_add(r, table[15, at], five)
         room[out, at] = mul_add(width, whole, start)
 
 
-def guess(t: float, energy: float, first: float, width: float, room: Any) -> None:
+def guess(t: float, energy: float, first: float, width: float, table: Any, room: Any) -> None:
     """Speeds and instants at the nodes if what moves the crank stays as it is at first."""
     apart()
-    push = width * (first + (room[LOAD, 0] - room[WEIGHT, 0]) / room[STRETCH, 0])
+    push = width * (first + room[LOAD, 0] - room[WEIGHT, 0])
     way, least = copysign(1.0, width), 0.3 * energy
     begin = sqrt(2.0 * energy * room[MOBILITY, 0])
     for i in range(NODES):
-        part = room[PLACES, i]
+        part = table[i, PLACE]
         speed = sqrt(2.0 * room[MOBILITY, i] * max(mul_add(push, part, energy), least))
         room[SPEED, i] = way * speed
         room[TIME, i] = t + 2.0 * abs(width) * part / (begin + speed)
@@ -117,26 +125,24 @@ def powers(room: Any) -> None:
 
 
 def slowness(way: float, room: Any) -> None:
-    """dt/dtheta at the nodes, but for its sign, the rate of the time, and the speed."""
+    """dt/dtheta at the nodes, but for its sign, and the speed."""
     apart()
     for i in range(NODES):
         speed = sqrt(2.0 * room[MOBILITY, i] * room[ENERGY, i])
-        slow = 1.0 / speed
-        room[SLOWNESS, i] = slow
-        room[PACE, i] = slow * room[STRETCH, i]
+        room[SLOWNESS, i] = 1.0 / speed
         room[SPEED, i] = way * speed
 
 
 def course(t: float, energy: float, width: float, table: Any, room: Any) -> float:
     """Energies, speeds and instants at the nodes from the torque there; the least energy."""
     powers(room)
-    integrate(energy, width, table, FROM_REST if energy == 0.0 else USUAL, room, int64(RATE), int64(ENERGY))
+    integrate(energy, width, table, room, int64(RATE), int64(ENERGY))
     least = inf
     for i in range(NODES):
-        least = min(least, room[ENERGY, i] * room[DEPTH, i])
+        least = min(least, room[ENERGY, i])
     if least > 0.0:  # else NaN would slow down what follows
         slowness(copysign(1.0, width), room)
-        integrate(t, abs(width), table, USUAL, room, int64(PACE), int64(TIME))
+        integrate(t, abs(width), table, room, int64(SLOWNESS), int64(TIME))
     return least
 
 
@@ -149,22 +155,13 @@ def ask(law: Any, room: Any) -> float:
         for i in range(NODES):
             angle, speed = room[ANGLE, i], room[SPEED, i]
             room[NOW, i] = piece(law[TORQUE_OF:FORCE], angle, speed, room[HEIGHT, i])[0]
-    differ(room)
     most, none = 0.0, 0.0
     for i in range(NODES):
-        change = abs(room[MISS, i])
-        most = max(most, change)
-        none += 0.0 * change
+        room[MISS, i] = room[NOW, i] - room[TORQUE, i]
+        room[TORQUE, i] = room[NOW, i]
+        most = max(most, abs(room[MISS, i]))
+        none += 0.0 * room[MISS, i]
     return most + none
-
-
-def differ(room: Any) -> None:
-    """The torque's change at the nodes, and the new one."""
-    apart()
-    for i in range(NODES):
-        now = room[NOW, i] * room[STRETCH, i]
-        room[MISS, i] = now - room[TORQUE, i]
-        room[TORQUE, i] = now
 
 
 def bend_of(law: Any, room: Any) -> float:
@@ -176,16 +173,10 @@ def bend_of(law: Any, room: Any) -> float:
 
 def correct(bend: float, width: float, table: Any, room: Any) -> None:
     """Foresee what the torque's change makes of the speed, and that again of the torque: Newton's method."""
-    integrate(0.0, width, table, USUAL, room, int64(MISS), int64(GAIN))
+    integrate(0.0, width, table, room, int64(MISS), int64(GAIN))
     respond(bend, room)
-    integrate(0.0, width, table, USUAL, room, int64(PART), int64(GAIN))
+    integrate(0.0, width, table, room, int64(PART), int64(GAIN))
     respond(bend, room)
-    foresee(room)
-
-
-def foresee(room: Any) -> None:
-    """Add to the torque what its last change makes of it."""
-    apart()
     for i in range(NODES):
         room[TORQUE, i] += room[PART, i] - room[MISS, i]
 
@@ -194,7 +185,7 @@ def respond(bend: float, room: Any) -> None:
     """The torque's change by a gain of energy, besides that which is known."""
     apart()
     for i in range(NODES):
-        by_energy = bend * room[PACE, i] * room[MOBILITY, i]  # domega/dE = 1/(M_eff omega)
+        by_energy = bend * room[SLOWNESS, i] * room[MOBILITY, i]  # domega/dE = 1/(M_eff omega)
         room[PART, i] = room[MISS, i] + by_energy * room[GAIN, i]
 
 
