@@ -12,7 +12,8 @@ from .checks import LEAST_RTOL
 from .drive import LOADED, ConstantCurve, Curve
 from .events import Q, W
 from .law import Law, state_of
-from .march import RESTING, March
+from .loops.march import RESTING
+from .march import March
 from .panel import NODES, basis
 from .result import FAILED, LIMIT, REST, Simulation
 

@@ -18,7 +18,6 @@ with alpha_free the acceleration without friction: one solution, which has the s
 -1 <= K sign(N_free) < 1; none above (the friction jams) and two below.
 """
 
-from math import copysign
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -69,10 +68,6 @@ class Contact(NamedTuple):
         """The number of force balances."""
         share = self.wedge * self.pressed
         return np.where(share >= JAMS_AT, 0, np.where(share < -1.0, 2, 1))
-
-    def starts(self, direction: float) -> Any:
-        """True where the crank starts from rest in a direction."""
-        return (self.solutions == 1) & (self.alpha * direction > 0.0)
 
 
 class Guide(NamedTuple):
@@ -231,17 +226,3 @@ def state_of(model: Model, q: Any, v: Any) -> State:
     with np.errstate(invalid="ignore", divide="ignore"):
         omega = np.where(inertia > 0.0, v / np.sqrt(inertia), 0.0)
     return State(theta, omega) if np.ndim(q) else State(float(theta), float(omega))
-
-
-def side_ahead(model: Model, theta: float, direction: float) -> float:
-    """The sign of Y' where the crank is, or just ahead of it at a dead centre."""
-    travel = model.still(theta).travel
-    if abs(travel) <= 1e-9 * model.values["AB"]:
-        travel = model.still(theta + 1e-6 * direction).travel
-    return copysign(1.0, travel)
-
-
-def law_at_rest(model: Model, theta: float, direction: float) -> Law:
-    """The law of a crank that starts to turn one way; which side of the guide presses is open."""
-    side = side_ahead(model, theta, direction) if model.mu else 0.0
-    return Law(model, model.drive.ahead(theta, 0.0, direction, direction), direction, side)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.messages import named
+from ..mechanism.messages import Message, named
 from ..support.deadline import Deadline
 from .drive import FunctionCurve
 from .events import (
@@ -28,7 +28,7 @@ from .events import (
     time_of,
     words_of,
 )
-from .law import Law, Resting, State, law_at_rest, state_of
+from .law import Law, Resting, State, state_of
 from .loops import march, newton, panels, state
 from .loops.compiled import panels as compiled_panels
 from .loops.cuts import JAMMED, LIMIT, NO_CUT
@@ -42,12 +42,10 @@ from .result import DONE, FAILED, JAMS, REST, Event
 
 Array = NDArray[np.float64]
 NEXT_TO = 1e-9  # rad: so near to a limit a load on a massless slider has grown without bound
-PROBES = 2000  # instants of a motion at which loads that depend on time are compared with the panels
 SHARP = 3e-11  # of a radian: a limit angle cannot be told better
 CHATTER = 6  # standstills in a row, all within a millionth of the time
 FLOOR = 0.01  # of the root of the energy that start and loads suggest: the least size of v
 BRIEF = 64  # panels of a call, which neither an interrupt nor a deadline stops
-RESTING = -1.0  # in place of a cut: nothing moves
 HEAD = 7  # numbers of a panel (see `loops.panels`)
 _CALLED = CFUNCTYPE(c_int64, c_int64, c_int64, c_int64)
 
@@ -76,7 +74,7 @@ class Record(NamedTuple):
     @property
     def stretches(self) -> NDArray[np.intp]:
         """The number of the stretch of each panel: one law holds on it."""
-        new = (self.ends[:-1, 0] != NO_CUT) | (self.ends[1:, 0] == RESTING)
+        new = (self.ends[:-1, 0] != NO_CUT) | (self.ends[1:, 0] == march.RESTING)
         return np.concatenate([[0], np.cumsum(new)])
 
 
@@ -143,7 +141,11 @@ class March:
             self._fail(reason)
         self.deadline.lift()
         if not self._kept:  # stopped where it started
-            self._keep_still(0.0)
+            head, ends = (
+                np.array([[0.0, 0.0, 0.0, *self.y, 0.0]]),
+                np.array([[march.RESTING, 0.0, 0.0, 0.0, 0.0]]),
+            )
+            self._kept.append((head, np.zeros((1, 3, NODES + 1)), np.zeros((1, 7, NODES)), ends))
         passed = passages(self.model, self.marks, self.record)
         self.events = sorted([*passed, *self.events], key=lambda event: event.t)
         return self
@@ -176,7 +178,7 @@ class March:
         most = min(left, BRIEF) + 1
         heads, records, count = np.zeros((most, HEAD)), np.empty((most, 3, NODES + 1)), np.zeros(1)
         rates, ends = np.empty((most, 7, NODES)), np.empty((most, 5))
-        if self._kept and self._kept[-1][3][-1, 0] != RESTING:
+        if self._kept:
             count[0], heads[0], records[0] = 1.0, self._kept[-1][0][-1], self._kept[-1][1][-1]
         self.error = None
         knots = np.array(self.model.drive.knots, np.float64)
@@ -187,6 +189,10 @@ class March:
         self.steps += made.stop - 1
         if made.stop > 1:
             self._kept.append((heads[made], records[made], rates[made], ends[made]))
+            for start, _, _, q, _, _, stop in heads[made][ends[made, 0] == march.RESTING].tolist():
+                if start < stop < self.t_end:
+                    angle = float(self.model.coordinate.theta(q))
+                    self.events.append(Event("break-away", stop, angle, 0.0))
         if self.error is not None and (self.stops or code in (panels.FAILED, panels.STOPPED)):
             raise self.error
         self._after(code)
@@ -196,13 +202,17 @@ class March:
         if code == panels.FAILED:
             self._fail("no panel of time resolves it, however short")
         elif code == march.RESTS:
-            self._rest()
+            why = " on: the torque cannot move the crank there"
+            self.stop(REST, "at rest from t = " + time_of(self.t) + why)
         elif code in (march.NO_BALANCE, march.TWO_BALANCES):
             self._jam(0 if code == march.NO_BALANCE else 2)
         elif code == march.CUT:
             self._cut(*self._kept[-1][3][-1, :2])
         elif self.t >= self.t_end:
-            self.stop(DONE, "reached t_end = " + time_of(self.t_end))
+            last, rests = self._kept[-1], Message("")
+            if last[3][-1, 0] == march.RESTING:
+                rests = ", at rest from t = " + time_of(last[0][-1, 0]) + " on"
+            self.stop(DONE, "reached t_end = " + time_of(self.t_end) + rests)
         elif self.numbers[state.KERNEL] == 0.0 or self.numbers[state.TORQUE] == state.FUNCTION:
             self._slides()
 
@@ -247,7 +257,7 @@ class March:
         record = self.record
         k = int(np.searchsorted(record.stretches, record.stretches[k]))
         (start, h, stop), series = record.heads[k, [0, 1, 6]], record.series[k]
-        if record.ends[k, 0] == RESTING:
+        if record.ends[k, 0] == march.RESTING:
             return Resting(self.model, self.model.drive)
         middle = basis(np.array([(stop - start) / h - 1.0 if h > 0.0 else 0.0]), NODES)[:, 0]
         q, v, _ = (record.y[k] + series @ middle).tolist()
@@ -282,48 +292,6 @@ class March:
         self.tell(JAM, now, which)
         where = "at t = " + time_of(self.t) + ", theta = " + angle_of(now.theta)
         self.stop(JAMS, "the friction jams " + where + f": {which}")
-
-    def _rest(self) -> None:
-        """Wait for the torque or load to break the crank away."""
-        start, self.clock[panels.WISH] = self.t, 0.0
-        if self.model.drive.steady:
-            why = " on: the torque cannot move the crank there"
-            self.stop(REST, "at rest from t = " + time_of(start) + why)
-            return
-        moves = self._breaks_away(self.state.theta)
-        self.clock[panels.T] = self.t_end if moves is None else moves
-        self._keep_still(start)
-        if moves is None:
-            rest = ", at rest from t = " + time_of(start) + " on"
-            self.stop(DONE, "reached t_end = " + time_of(self.t_end) + rest)
-        else:
-            self.tell("break-away", self.state)
-
-    def _breaks_away(self, theta: float) -> float | None:
-        """The instant at which a time-dependent torque or load moves a crank at rest; None if it never does.
-
-        Asked at many instants: a push that is over sooner than that is not noticed.
-        """
-        laws = [law_at_rest(self.model, theta, direction) for direction in (1.0, -1.0)]
-
-        def moves(t: Array) -> Array:
-            forth, back = (law.contact(t, theta, 0.0).starts(law.direction) for law in laws)
-            return np.broadcast_to(np.logical_or(forth, back), t.shape)
-
-        instants: Array = np.linspace(self.t, self.t_end, PROBES + 1)
-        first = np.flatnonzero(moves(instants)[1:])
-        if not first.size:
-            return None
-        a, b = instants[first[0]], instants[first[0] + 1]
-        while a < (middle := 0.5 * (a + b)) < b:
-            a, b = (a, middle) if moves(np.array([middle]))[0] else (middle, b)
-        return float(b)
-
-    def _keep_still(self, start: float) -> None:
-        """A panel in which nothing moves."""
-        head = np.array([[start, self.t - start, 0.0, *self.y, self.t]])
-        ends = np.array([[RESTING, 0.0, 0.0, 0.0, 0.0]])
-        self._kept.append((head, np.zeros((1, 3, NODES + 1)), np.zeros((1, 7, NODES)), ends))
 
     def _fail(self, reason: str) -> None:
         now, law = self.state, self.law_at_end
@@ -392,8 +360,9 @@ class March:
         if called:
             self._callbacks.append(self._guarded(_torques(called)))
             laws.add_function(0, _address(self._callbacks[2]))
-        if any(curve.depends_on_time for curve in drive):
-            numbers[state.PROBE] = self.t_end / PROBES
+        timed = any(curve.depends_on_time for curve in drive)
+        numbers[state.WAITS] = 0.0 if drive.steady else 2.0 if timed else 1.0
+        numbers[state.PROBE] = self.t_end / march.PROBES if timed else 0.0
         return laws
 
     def _guarded(self, work: Callable[[int, int, int], None]) -> Any:

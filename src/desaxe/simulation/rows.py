@@ -31,7 +31,6 @@ from .events import NEVER
 from .history import PANELS, TELLS, told_of
 from .loops import state
 from .loops.compiled import DesignFamily, motions
-from .loops.motions import NOT_HERE
 from .loops.picard import nodes_table
 from .loops.torque import compiled
 from .model import fixed_zeros, form_of
@@ -195,18 +194,20 @@ def _together(
     for k, name in enumerate(DRIVE):
         if k or not code:
             laws.add(k, varying.get(name, flat.get(name)))
-    timed = code is not None and "t" in arguments_of("torque", torque, TIME_AND_CRANK)
-    how = np.array([ask.rtol, ask.t_end, ask.max_steps, timed], float)
+    if code is not None:
+        timed = "t" in arguments_of("torque", torque, TIME_AND_CRANK)
+        laws.law[:, state.WAITS] = 2.0 if timed else 1.0
+    elif varying:
+        laws.law[:, state.WAITS] = 1.0
+    how = np.array([ask.rtol, ask.t_end, ask.max_steps], float)
     histories, numbers = np.empty((left.size, len(MOTION), answers.t.size)), np.full((answers.size, 4), nan)
     status, found = answers.status[left], np.full((left.size, 4), nan)
     known = laws.law, laws.data, kinks_of(flat, ask.branch, ask.until), laws.sheets
     _run(known, laws.knots, answers.t, how, (histories, status, found), threads, ask.deadline)
-    there = status != NOT_HERE
-    here, numbers[left] = left[there], found
     for k, name in enumerate(MOTION):
-        answers.histories[name][here] = histories[there, k]
-    answers.status[here] = status[there]
-    answers.told(here[status[there] != NO_START], numbers)
+        answers.histories[name][left] = histories[:, k]
+    answers.status[left], numbers[left] = status, found
+    answers.told(left[status != NO_START], numbers)
 
 
 def kinks_of(flat: Mapping[str, Array], branch: int, until: Sequence[float]) -> Array:

@@ -4,8 +4,8 @@ sheets   pieces of loads: rows of angles (or speeds) from which they hold, and t
 knots    speeds at which pieces meet
 records  series of panels; at their nodes the rates of q, v and W, the speed, and under friction the normal
          force, its wedging and its rounding
-ends     kind of the cut at the end of a panel, row of its angle; direction, sign of Y' and side of the guide
-         that hold on the panel, and the direction in which the speed grows
+ends     kind of the cut at the end of a panel (RESTING: nothing moves), row of its angle; direction, sign of
+         Y' and side of the guide that hold on the panel
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from .newton import (
     WEDGE,
     newton,
 )
-from .panels import CHOSEN, FLIPPED, GOES_ON, LEFT, STOPPED, T_END, WISH, T, guess, motion, one, value
+from .panels import CHOSEN, FLIPPED, GOES_ON, LEFT, STOPPED, T_END, WISH, T, guess, keep, motion, one, value
 from .state import (
     CHOOSE,
     DIRECTION,
@@ -64,17 +64,20 @@ from .state import (
     TINY,
     TORQUE,
     TRAVEL,
+    WAITS,
     place,
 )
 
 if TYPE_CHECKING:
     from typing import Any
 
+RESTING = -1.0  # in place of a cut: nothing has moved
 RESTS, NO_BALANCE, TWO_BALANCES, CUT = range(3, 7)  # besides those of `panels`
 JAMS_AT = 1.0 - 1e-6  # see `..law`
 AHEAD = 1e-9  # rad: which piece follows an angle
 BEHIND = 1e-8  # of the largest speed of a motor's table: which piece of it follows a speed
 TURNED_ON = 1e-6  # rad: so far from a dead centre the slider has left its position
+PROBES = 2000  # instants of a motion at which loads that depend on time are asked
 SOON = 1e-6  # of the motion: then a normal force has left 0
 EXACT = 0.02  # tolerances: a panel whose inside is so exact need not be solved again up to a cut
 GROWING = int64(6)  # of the choice: numbers that a function takes which chooses pieces
@@ -239,6 +242,39 @@ def choose(y: Any, clock: Any, knots: Any, sheets: Any, law: Any, data: Any, row
     return code
 
 
+def wait(y: Any, clock: Any, knots: Any, sheets: Any, law: Any, data: Any, rows: Any, head: Any) -> int:
+    """Wait at rest until a load moves the crank, or for the end: GOES_ON, or what a function has raised.
+
+    Asked at many instants: a push that is over sooner than that is not noticed.
+    """
+    still: Any = empty(32)
+    start, end, before, code = clock[T], clock[T_END], clock[T], RESTS
+    now = end
+    for k in range(1, PROBES + 1):
+        if law[WAITS] == 2.0:
+            clock[T] = start + (end - start) * (k / PROBES)
+            code = choose(y, clock, knots, sheets, law, data, rows, still)
+            if code != RESTS:
+                now = clock[T]
+                break
+            before = clock[T]
+    while code != RESTS and before < 0.5 * (before + now) < now:
+        clock[T] = 0.5 * (before + now)
+        other = choose(y, clock, knots, sheets, law, data, rows, still)
+        if 0 < other < RESTS:
+            return other
+        if other == RESTS:
+            before = clock[T]
+        else:
+            now = clock[T]
+    if 0 < code < RESTS:
+        return code
+    clock[T], clock[WISH], clock[CHOSEN] = now, 0.0, 0.0
+    keep(head, start, 0.0, 0.0, y)
+    head[6] = now
+    return GOES_ON
+
+
 def shortened(
     y: Any, clock: Any, scales: Any, law: Any, data: Any, table: Any, rows: Any, matrix: Any, head: Any,
     series: Any, cut: Any,
@@ -341,6 +377,11 @@ def advance(
             y, clock, scales, kinks, knots, sheets, law, data, table, rows, matrix, heads[made],
             records[made], head, series, cut, new,
         )  # fmt: skip
+        if code == RESTS and law[WAITS] > 0.0:
+            code = wait(y, clock, knots, sheets, law, data, rows, head)
+            cut[KIND], new[0], new[1], new[2] = RESTING, y[0], y[1], y[2]
+            for j in range(17):
+                series[0, j], series[1, j], series[2, j] = 0.0, 0.0, 0.0
         if code != GOES_ON and code != CUT:
             break
         made += 1

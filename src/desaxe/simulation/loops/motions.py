@@ -3,7 +3,7 @@
 A crank that turns fully without friction goes by panels of the crank angle (`over_angle`) where its speed
 lets it; all others, and where these fail, by panels of time (`march`).
 
-how      relative tolerance, t_end, most steps, 1 where the loads know the time
+how      relative tolerance, t_end, most steps
 tables   of panels of time (`newton`) and of the angle (`picard`)
 history  rows of angles, speeds and accelerations
 """
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from numpy import empty, int64, zeros
 
 from .cuts import JAMMED, KIND, KINK, LIMIT, ROW
-from .march import CUT, RESTS, acceleration, choose, step
+from .march import CUT, RESTS, acceleration, choose, step, wait
 from .newton import ANGLE, RATE_V, ROWS, SPEED
 from .over_angle import by_panel, over_panel
 from .panels import CHOSEN, GOES_ON, LEFT, NEAR, SHARP, T_END, WISH, T, motion, next_kink, value
@@ -31,6 +31,7 @@ from .state import (
     RUBS,
     THETA0,
     TORQUE,
+    WAITS,
     account,
     energy_of,
     place,
@@ -44,7 +45,6 @@ if TYPE_CHECKING:
 COLUMNS = int64(24)  # of the room of a panel
 CROWD, NARROW, BESIDE = 64, 0.1, 0.005  # so many panels, rad that they turn, of a speed on either side of it
 SHARPEST = 3e-11  # of a radian: a limit angle cannot be told better
-NOT_HERE = 7  # a status: what comes next depends on the time
 
 
 def told(status: Any, t: float, steps: Any, y: Any, law: Any, sums: Any, numbers: Any) -> Any:
@@ -95,10 +95,10 @@ def tell_at(t: float, q: float, v: float, law: Any, data: Any, history: Any, row
     history[0, row], history[1, row], history[2, row] = rows[ANGLE, 0], rows[SPEED, 0], acceleration(rows)
 
 
-def end_of(code: Any, cut: Any, kinks: Any, how: Any) -> Any:
+def end_of(code: Any, cut: Any, kinks: Any) -> Any:
     """The status of a motion after a panel, or without one; -1 where it goes on, -2 where it fails."""
     if code == RESTS:
-        return NOT_HERE if how[3] > 0.0 else 1
+        return 1
     if code > RESTS and code < CUT:
         return 3
     if code == CUT:
@@ -130,6 +130,16 @@ def follow(
         code, end = GOES_ON, -1.0
         if clock[CHOSEN] == 0.0:
             code = choose(y, clock, knots, sheets, law, data, rows, still)
+        if code == RESTS and law[WAITS] > 0.0:
+            code = wait(y, clock, knots, sheets, law, data, rows, head)
+            while row < len(times) and times[row] <= clock[T]:
+                history[0, row], history[1, row], history[2, row] = place(y[0], law), 0.0, 0.0
+                row += 1
+            t, last[1] = clock[T], 0.0
+            if t >= how[1]:
+                status = 0
+                break
+            continue
         while code == GOES_ON and row < len(times) and times[row] <= t:
             tell_at(t, y[0], y[1], law, data, history, row)
             if t == 0.0:
@@ -154,7 +164,7 @@ def follow(
                 y, clock, scales, kinks, knots, sheets, law, data, table, rows, matrix, last, before, head,
                 series, cut, new,
             )  # fmt: skip
-            status = end_of(code, cut, kinks, how)
+            status = end_of(code, cut, kinks)
             if code != GOES_ON and code != CUT:
                 break
             end = clock[T]
@@ -170,7 +180,7 @@ def follow(
                 for j in range(17):
                     before[k, j] = series[k, j]
         elif code != GOES_ON:
-            status = end_of(code, cut, kinks, how)
+            status = end_of(code, cut, kinks)
             break
         account(y, new, law, data, sums)
         scales[1] = max(scales[1], abs(y[1]))

@@ -8,7 +8,8 @@ law      numbers: addresses of the executor's kernel (0 where the law has no clo
          branch, mu; the direction, the sign of Y', and the least Y' that has one; SHEETS: first row, rows
          and period of the pieces of each load; the address of a function that chooses pieces otherwise; the
          distance of instants at which a function is compared with the panels; NEXT: the angles at which the
-         pieces end; of one of many designs theta0, omega_start; an energy that the loads suggest
+         pieces end; whether a crank at rest waits (0 for ever, 1 to the end, 2 for a load that knows the
+         time); of one of many designs theta0, omega_start; an energy that the loads suggest
 data     the packed inputs of the kernel
 """
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 KERNEL, ANSWER, HALF, FIRST, LAST, TORQUE, FORCE, SIDEWAYS = 0, 1, 2, 3, 4, 5, 12, 19
 RUBS, CONTACT, CONTACT_DATA, DRAG, PRESSED, LEANS, MU, DIRECTION, SIDE, TINY = range(26, 36)
-SHEETS, CHOOSE, PROBE, NEXT, NUMBERS = 36, 45, 46, 47, 50
+SHEETS, CHOOSE, PROBE, NEXT, WAITS, NUMBERS = 36, 45, 46, 47, 50, 51
 THETA0, OMEGA_START, ENERGY = NUMBERS, NUMBERS + 1, NUMBERS + 2
 SLOTS = 7  # numbers of a piece
 CONSTANT, OVER_THETA, OVER_OMEGA, KLOSS, FUNCTION, OVER_Y = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0  # kinds of pieces
