@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from math import inf
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +14,8 @@ from .checks import SMALL
 from .law import state_of
 from .loops.cuts import KINK as CUT_AT_ANGLE
 from .model import Model
-from .panel import NODES, basis
+from .panel import NODES, Record, basis
 from .result import DONE, LIMIT, NO_INERTIA, Event
-
-if TYPE_CHECKING:
-    from .march import Record
 
 Array = NDArray[np.float64]
 NEAR = 1e-9  # rad: an angle that a stretch starts from is not reached at once
@@ -53,7 +50,7 @@ def marks_of(model: Model, until: Sequence[float]) -> list[Mark]:
     return marks
 
 
-def passages(model: Model, marks: Sequence[Mark], record: "Record") -> list[Event]:
+def passages(model: Model, marks: Sequence[Mark], record: Record) -> list[Event]:
     """The dead centres that a motion passes; on a panel the crank turns one way."""
     centres = [mark for mark in marks if mark.kind == "dead centre"]
     y = np.vstack([record.y, record.last])

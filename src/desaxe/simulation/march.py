@@ -31,12 +31,12 @@ from .events import (
 from .law import Law, Resting, State, state_of
 from .loops import march, newton, panels, state
 from .loops.compiled import panels as compiled_panels
-from .loops.cuts import JAMMED, LIMIT, NO_CUT
+from .loops.cuts import JAMMED, LIMIT
 from .loops.cuts import KINK as AT_ANGLE
 from .loops.cuts import STANDSTILL as STILL
 from .loops.motions import BESIDE, CROWD, NARROW
 from .model import Model
-from .panel import NODES, TABLE, Panel, basis
+from .panel import NODES, TABLE, Panel, Record, basis
 from .pieces import LawNumbers
 from .result import DONE, FAILED, JAMS, REST, Event
 
@@ -55,27 +55,6 @@ class Settings(NamedTuple):
 
     rtol: float
     max_steps: int
-
-
-class Record(NamedTuple):
-    """Panels one after the other, as `loops.march` records them, and q, v and W at the end."""
-
-    heads: Array
-    series: Array
-    rates: Array
-    ends: Array
-    last: Array
-
-    @property
-    def y(self) -> Array:
-        """q, v and W at the starts."""
-        return self.heads[:, 3:6]
-
-    @property
-    def stretches(self) -> NDArray[np.intp]:
-        """The number of the stretch of each panel: one law holds on it."""
-        new = (self.ends[:-1, 0] != NO_CUT) | (self.ends[1:, 0] == march.RESTING)
-        return np.concatenate([[0], np.cumsum(new)])
 
 
 class March:
@@ -198,7 +177,7 @@ class March:
         self._after(code)
 
     def _after(self, code: int) -> None:
-        """What comes after panels."""
+        """Go by what the loops have ended with."""
         if code == panels.FAILED:
             self._fail("no panel of time resolves it, however short")
         elif code == march.RESTS:
@@ -217,7 +196,7 @@ class March:
             self._slides()
 
     def _cut(self, kind: float, row: float) -> None:
-        """What comes after a panel that is cut."""
+        """Record the event at which a panel is cut, and stop if the motion ends with it."""
         if kind == STILL:
             self.tell(STANDSTILL, self.state._replace(omega=0.0))
             self.stills = [t for t in self.stills[1 - CHATTER :] if self.t - t < 1e-6 * self.t_end] + [self.t]

@@ -11,6 +11,8 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from .law import Law
+from .loops.cuts import NO_CUT
+from .loops.march import RESTING
 
 Array = NDArray[np.float64]
 NODES = 16
@@ -55,3 +57,24 @@ class Panel(NamedTuple):
     series: Array  # 3, NODES + 1: of what is added to them
     stop: float
     rates: Array  # of q, v and W at the nodes, and others (see `loops.march`)
+
+
+class Record(NamedTuple):
+    """Panels one after the other, as `loops.march` records them, and q, v and W at the end."""
+
+    heads: Array
+    series: Array
+    rates: Array
+    ends: Array
+    last: Array
+
+    @property
+    def y(self) -> Array:
+        """q, v and W at the starts."""
+        return self.heads[:, 3:6]
+
+    @property
+    def stretches(self) -> NDArray[np.intp]:
+        """The number of the stretch of each panel: one law holds on it."""
+        new = (self.ends[:-1, 0] != NO_CUT) | (self.ends[1:, 0] == RESTING)
+        return np.concatenate([[0], np.cumsum(new)])

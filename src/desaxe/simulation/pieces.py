@@ -42,7 +42,7 @@ from .loops.state import (
 Array = NDArray[np.float64]
 
 
-class Sheet(NamedTuple):
+class LoadPieces(NamedTuple):
     """Pieces: rows of angle or speed, and both lists of numbers; for each design, or one for all.
 
     period   0: they are over the speed
@@ -52,7 +52,7 @@ class Sheet(NamedTuple):
     rows: Array
 
 
-def table_sheet(load: TableOverTheta | OverOmega) -> Sheet:
+def table_sheet(load: TableOverTheta | OverOmega) -> LoadPieces:
     """The pieces of a table over angle or speed."""
     table, over_angle = load.table, isinstance(load, TableOverTheta)
     starts = table.knots if over_angle else (-np.inf, *table.knots)
@@ -74,7 +74,7 @@ def meeting_angles(load: OverY, lengths: Sequence[Array], branch: int) -> Array:
 
 def sheet_over_Y(
     load: OverY, lengths: Sequence[Array], branch: int, arc: Array, slider: Callable[[Array], Any]
-) -> Sheet:
+) -> LoadPieces:
     """The pieces of a table over the slider's position.
 
     arc      of each design: both limit angles, or infinite
@@ -100,10 +100,10 @@ def sheet_over_Y(
     return _sheet(TURN, edges, *ways)
 
 
-def _sheet(period: float, starts: Array, forth: Any, back: Any) -> Sheet:
+def _sheet(period: float, starts: Array, forth: Any, back: Any) -> LoadPieces:
     rows = np.empty((*starts.shape, 1 + 2 * SLOTS))
     rows[..., 0], rows[..., 1 : 1 + SLOTS], rows[..., 1 + SLOTS :] = starts, forth, back
-    return Sheet(period, rows)
+    return LoadPieces(period, rows)
 
 
 def compiles(load: Any, AB: Any, BC: Any) -> bool:
@@ -165,7 +165,7 @@ class LawNumbers:
         if k < 2:
             law[:, ENERGY] = np.maximum(law[:, ENERGY], np.abs(size) * (self.flat["AB"] if k else 1.0))
 
-    def _sheet(self, load: Any) -> Sheet:
+    def _sheet(self, load: Any) -> LoadPieces:
         if isinstance(load, OverY):
             lengths = [self.flat[name] for name in LENGTHS]
             return sheet_over_Y(load, lengths, self.branch, self.arcs, self._slider)

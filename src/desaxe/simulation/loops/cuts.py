@@ -127,7 +127,7 @@ def at_knots(knots: Any, rows: Any, table: Any, cut: Any) -> None:
 
 
 def at_guide(rows: Any, table: Any, cut: Any) -> None:
-    """Where the normal force changes its side, or the friction jams."""
+    """The change of side of the normal force, and the jam of the friction."""
     series: Any = empty(17)
     noise, before, a = 0.0, 0.0, 0.0
     for i in range(16):

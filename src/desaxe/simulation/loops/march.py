@@ -137,7 +137,7 @@ def acceleration(rows: Any) -> float:
 
 
 def balances(rows: Any) -> tuple[float, int]:
-    """Of the guide at the first node, with the positive side held: its side, and the sets of forces."""
+    """The side of the guide at the first node, with the positive one held, and the sets of forces."""
     side = copysign(1.0, rows[NORMAL, 0])
     share = rows[WEDGE, 0] * side
     return side, 0 if share >= JAMS_AT else 2 if share < -1.0 else 1

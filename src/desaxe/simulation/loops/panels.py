@@ -91,7 +91,7 @@ def time_over(gap: float, speed: float, bend: float) -> float:
 
 
 def gap_to(kink: Any, theta: float, way: float, least: float) -> float:
-    """How far ahead an angle lies, or its next repetition, if that is more than `least`; infinite if none."""
+    """The distance to an angle ahead, or to its next repetition beyond `least`; infinite if there is none."""
     gap: float = (kink[0] - theta) * way
     if kink[1] < inf:
         gap -= kink[1] * floor(gap / kink[1])
@@ -100,7 +100,7 @@ def gap_to(kink: Any, theta: float, way: float, least: float) -> float:
 
 
 def next_kink(theta: float, way: float, least: float, kinks: Any, law: Any) -> Any:
-    """How far ahead the next angle lies that cuts the motion, its row, and the angle.
+    """The distance to the next angle that cuts the motion, its row, and the angle.
 
     The first is one that ends it; the row is -1 where the piece of a load ends.
     """
