@@ -1,6 +1,5 @@
 """Loads in words: in a line, and shorter in a cell of a table."""
 
-import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -38,8 +37,3 @@ def span(ends: Sequence[float]) -> str:
     """The range of numbers in four digits, without exponents where six will do."""
     least, most = (f"{x:g}" if "e" in f"{x:.4g}" else f"{x:.4g}" for x in (min(ends), max(ends)))
     return f"{least} to {most}"
-
-
-def without_points(words: str) -> str:
-    """The words of a load without the range of its points."""
-    return re.sub(r" \(points .*?\)", "", words)
