@@ -97,6 +97,23 @@ def test_the_phase_at_which_a_torque_has_a_value():
         THREE.solve(over={"m_slider": (0.2, 0.9)}, where={("max", "T_in"): 60.0}, m_piston=1.0)
 
 
+def test_functions_without_derivatives_take_differences():
+    def force(Y):
+        return -2000.0 * (Y - 0.1) - 1e6 * (Y - 0.1) ** 3
+
+    exact = dx.over_Y(force, derivative=lambda Y: -2000.0 - 3e6 * (Y - 0.1) ** 2)
+    bare, known = (THREE.replace(F_Y=load) for load in (dx.over_Y(force), exact))
+    for call in (
+        lambda m: m.peak("T_in", AB=[0.044, 0.045]),
+        lambda m: m.peak("T_in"),
+        lambda m: m.crossings("T_in", value=5.0),
+        lambda m: m.drive(),
+    ):
+        one, other = (call(machine)["gradient"] for machine in (bare, known))
+        one, other = (result.get("torque_rms", result)["phase[1]"] for result in (one, other))
+        np.testing.assert_allclose(one, other, rtol=1e-7)
+
+
 def test_peaks_of_many_are_those_of_each():
     changes = {"AB": [0.044, 0.045], "phase[1]": [100.0, 120.0]}
     for kind in ("max", "min", "absmax"):

@@ -34,6 +34,8 @@ class ShaftCycle(Cycle):
             for inputs in self.sliders.inputs_of_each()
         )
         self.own = [Turn(caller, own, own.pop("branch", 1)) for own in here]
+        loads = {f"{n}[{k}]": load for k, own in enumerate(self.own) for n, load in own.loads.items()}
+        self.sliders = self.sliders.replaced(loads)  # functions with derivatives by differences
         backwards = state.get("omega0", state.get("omega", 1.0)) < 0.0
         turns = lcm(*(own.turns for own in self.own))
         super().__init__({**state, "sliders": self.sliders}, {}, 1, turns, backwards)

@@ -59,15 +59,16 @@ class Sliders(SliderSums):
             def turn_of(k: int) -> ShaftTurn:
                 return ShaftTurn("peak", self, {**given, **{n: r[k].item() for n, r in rows.items()}}, theta)
 
-            def values(names: Sequence[str], angles: Any, row: Any) -> dict[str, Any]:
-                state = {**given, **{n: r[row] for n, r in rows.items()}, "theta": angles}
-                found: dict[str, Any] = self.evaluate(list(names), state)
-                return {n: np.broadcast_to(v, np.shape(angles)) for n, v in found.items()}
-
             size = int(np.prod(shape))
             if not size:
                 raise ValueError("peak: an empty array; expected at least one crankshaft")
-            turn = turn_of(0)
+            turn, numbers = turn_of(0), {n: v for n, v in given.items() if not callable(v)}
+
+            def values(names: Sequence[str], angles: Any, row: Any) -> dict[str, Any]:
+                state = {**numbers, **{n: r[row] for n, r in rows.items()}, "theta": angles}
+                found: dict[str, Any] = turn.sliders.evaluate(list(names), state)
+                return {n: np.broadcast_to(v, np.shape(angles)) for n, v in found.items()}
+
             first = np.array(turn.ends) if self.smooth else None
             each = [turn_of(k).edges([name]) if first is None else first for k in range(size)]
             edges = np.full((size, max(map(len, each))), np.nan)
