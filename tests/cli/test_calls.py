@@ -70,21 +70,35 @@ def test_the_numbers_are_those_of_the_call(line, capsys):
     assert numbers(found) == pytest.approx(expected, rel=1e-12, abs=1e-12, nan_ok=True)
 
 
-def test_a_scene_among_the_words_is_the_machine(capsys, monkeypatch):
-    monkeypatch.chdir(ROOT)
-    printed = []
-    for machine in ("examples/feeder.toml", "--machine examples/feeder.toml"):
-        assert main(f"fit examples/measured.csv over=AB,BC loss=huber ec=20mm {machine} --json".split()) == 0
-        printed.append(capsys.readouterr().out)
-    assert printed[0] == printed[1]
-
-
 def test_designs_are_columns_of_a_table(capsys):
     assert main(["peak", "a_C", "ec=0mm,10mm", *LENGTHS.split()[1:], "omega0=157", "--csv"]) == 0
     rows = list(csv.DictReader(capsys.readouterr().out.splitlines()))
     assert [float(row["ec [m]"]) for row in rows] == [0.0, 0.01]
     peaks = [dx.peak("a_C", ec=ec, AB=0.125, BC=0.35, omega0=157.0)["value"] for ec in (0.0, 0.01)]
     assert [float(row["value [m/s^2]"]) for row in rows] == pytest.approx(peaks, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (
+            "fit examples/feeder.toml examples/measured.csv --over AB BC --loss huber ec=20mm --json",
+            "fit examples/measured.csv over=AB,BC loss=huber ec=20mm --machine examples/feeder.toml --json",
+        ),
+        (
+            "fit examples/measured.csv --over AB=30mm:60mm --sigma Y=1mm --machine examples/motor.toml",
+            "fit examples/measured.csv over.AB=30mm:60mm sigma.Y=1mm --machine examples/motor.toml",
+        ),
+        (f"point a_C theta=1 --quality {WORDS}", f"evaluate a_C theta=1 quality=true {WORDS}"),
+    ],
+)
+def test_options_of_a_call_may_be_written_as_those_of_a_command(options, words, capsys, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    printed = []
+    for line in (options, words):
+        assert main(shlex.split(line)) == 0
+        printed.append(capsys.readouterr().out)
+    assert printed[0] == printed[1]
 
 
 @pytest.mark.parametrize("call", CALLS)

@@ -13,22 +13,45 @@ class UsageError(Exception):
 
 
 VALUED = ("--machine", "--units", "-o")  # options of a call whose value is the next word
+PLAIN = ("--json", "--csv", "--overwrite", "--list", "--help", "-h")
+FLAGS = ("--quality",)  # options of functions that are true
+TABLES = ("over", "sigma", "nuisance", "loss")  # and those that have values
 
 
 def options_first(words: Sequence[str]) -> list[str]:
     """The words of a call with its options, which may stand anywhere, ahead of names and inputs.
 
-    A scene without `--machine` is the machine.
+    `--over AB=35:50 --loss huber` is `over.AB=35:50 loss=huber`; a scene without `--machine` is the machine.
     """
     options: list[str] = []
     others: list[str] = []
+    tables: dict[str, list[str]] = {}
+    values: list[str] = others  # where the next word belongs
     for before, word in pairwise(["", *words]):
-        if word.startswith("-") or before in VALUED:
+        if word in PLAIN or word in VALUED or before in VALUED:
             options.append(word)
-        elif word.endswith(".toml") and "--machine" not in words:
+            values = others
+        elif word in FLAGS:
+            others.append(f"{word[2:]}=true")
+            values = others
+        elif word.startswith("--"):
+            if word[2:] in TABLES:
+                values = tables.setdefault(word[2:], [])
+            else:
+                options.append(word)
+        elif word.endswith(".toml") and values is others and "--machine" not in words:
             options += ["--machine", word]
         else:
-            others.append(word)
+            if values and "=" in word and values is tables.get("loss"):  # an input behind a value
+                values = others
+            values.append(word)
+    for key, parts in tables.items():
+        if not parts:
+            raise UsageError(f"--{key}: expected values, such as --over AB=30mm:60mm")
+        if any("=" in part for part in parts):
+            others += [f"{key}.{part}" if "=" in part else f"{key}.{part}=none" for part in parts]
+        else:
+            others.append(f"{key}={','.join(parts)}")
     return [*options, *others]
 
 
