@@ -96,6 +96,8 @@ def steady(
     if np.any(np.asarray(given.pop("alpha", 0.0), float)):
         raise ValueError("alpha: steady finds the speed over a turn itself; leave it out")
     rows = input_rows("steady", given, more, LENGTHS if turn is None else ())
+    if not rows.size:
+        raise ValueError("steady: an empty array; expected at least one design")
     speeds = [rows.numbers.pop(name) for name in ("omega", "omega0") if name in rows.numbers]
     way = np.where(rows.each(speeds[0] if speeds else 1.0) < 0.0, -1.0, 1.0)
     if source.way is not None:

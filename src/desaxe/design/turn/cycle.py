@@ -68,9 +68,6 @@ def input_rows(
     arrays = {name: as_array(name, value, LENGTHS, (caller,)) for name, value in numbers.items()}
     more = more or {}
     shape = broadcast_shape({**arrays, **more})
-    empty = next((name for name, a in {**arrays, **more}.items() if not a.size), None)
-    if empty is not None:
-        raise ValueError(f"{empty}: an empty array; expected at least one design")
     good = [np.broadcast_to(are_good(name, a), shape) for name, a in arrays.items()]
     good += [np.broadcast_to(np.isfinite(a), shape) for a in more.values()]
     bad = ~np.logical_and.reduce([np.ones(shape, bool), *good]).reshape(-1)
