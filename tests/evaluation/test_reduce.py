@@ -212,6 +212,10 @@ def test_one_axis_after_the_other_in_the_order_given():
     there = whole.sel(ec=found.a_C_max_min_ec, theta=found.a_C_max_min_theta)
     np.testing.assert_allclose(there, found.a_C_max_min, rtol=1e-13)
     assert "a_C_max_mean_theta" not in found
+    all_points = dx.grid("a_C", reduce={"theta": ["std", "p20"], "ec": ["std", "p20", "max"]}, **FEASIBLE)
+    np.testing.assert_allclose(all_points.a_C_std, whole.std(["theta", "ec"]), rtol=1e-12)
+    np.testing.assert_allclose(all_points.a_C_p20, whole.quantile(0.2, ["theta", "ec"]), rtol=1e-12)
+    np.testing.assert_allclose(all_points.a_C_std_max, whole.std("theta").max("ec"), rtol=1e-12)
     other = dx.grid("a_C", reduce={"ec": "min", "theta": "max"}, **FEASIBLE)
     np.testing.assert_allclose(other.a_C_min_max, whole.min("ec").max("theta"), rtol=1e-14)
 

@@ -33,7 +33,7 @@ from .kinds import Field, combined, field_of, folded, kind_of
 from .own_measure import OwnMeasure
 
 Array = NDArray[Any]
-Fields = dict[tuple[str, str], Field]  # by name and kind
+Fields = dict[tuple[str, tuple[tuple[str, ...], str]], Field]  # by name, axes and kind
 FLOAT = np.dtype(np.float64)
 BLOCK = 2**16  # points whose values stay in the second-level cache
 PIECE = 2**20  # points behind a number that are in memory at once, where pieces combine
@@ -106,7 +106,7 @@ class Reduced(Step):
         for name in self.names:
             for chain in self.reductions.chains(name):
                 (axes, kind), *rest = chain
-                first = firsts[name, kind]
+                first = firsts[name, chain[0]]
                 field = folded(first, [axis for axis in axes if axis in first.dims], kind, values)
                 for axes, kind in rest:
                     field = folded(field_of(field.dims, field.values, field.places), axes, kind, values)
@@ -121,27 +121,32 @@ class Reduced(Step):
         return result
 
     def _firsts(self, values: Mapping[str, Array], threads: int | None) -> Fields:
-        """The values by name and kind, reduced along the axes that are reduced first."""
-        stage, dims = self.reductions.stages[0], self.of.dims
-        rest, first = dims[: -len(stage.axes)], dims[-len(stage.axes) :]
-        kinds = [(name, kind) for name in self.names for kind in stage.kinds_of(name)]
+        """The values, reduced along the first axes of each chain, or along those of the first stage."""
+        dims, reductions = self.of.dims, self.reductions
+        keys = dict.fromkeys((name, chain[0]) for name in self.names for chain in reductions.chains(name))
+        combines = all(kind_of(kind).combines for _, (_, kind) in keys)
+        first = reductions.stages[0].axes if combines else reductions.axes
+        rest = tuple(name for name in dims if name not in first)
+        taken = {key: [name for name in dims if name in first and name in key[1][0]] for key in keys}
         sizes = {name: values[name].size for name in dims}
-        regions = [*self._regions(sizes, rest, all(kind_of(kind).combines for _, kind in kinds))]
+        regions = [*self._regions(sizes, rest, combines)]
         parts: list[Fields] = [{}] * len(regions)
 
         def part(start: int, stop: int) -> None:
             for k in range(start, stop):
                 block = {**values, **{name: values[name][one] for name, one in regions[k].items()}}
                 fields = {n: field_of(dims, a) for n, a in self.of.compute(block, 1).items()}
-                parts[k] = {key: folded(fields[key[0]], first, key[1], block) for key in kinds}
+                parts[k] = {
+                    key: folded(fields[key[0]], axes, key[1][1], block) for key, axes in taken.items()
+                }
 
         points = max([1, *(prod(one.stop - one.start for one in region.values()) for region in regions[:1])])
         run_parts(part, len(regions), threads, max(1, LEAST // points), max(1, LONGEST // points))
-        result = {key: _empty(rest, sizes, first if kind_of(key[1]).score else ()) for key in kinds}
+        result = {key: _empty(dims, sizes, axes, key[1][1]) for key, axes in taken.items()}
         for place, group in groupby(range(len(regions)), lambda k: [regions[k][name] for name in rest]):
             pieces = [parts[k] for k in group]
             for key, field in result.items():
-                _fill(field, tuple(place), combined([one[key] for one in pieces], key[1]))
+                _fill(field, tuple(place), combined([one[key] for one in pieces], key[1][1]))
         return result
 
     def _regions(self, sizes: Mapping[str, int], rest: Sequence[str], combines: bool) -> Iterator[Slices]:
@@ -169,11 +174,12 @@ class Reduced(Step):
         return _sides_of(name, self.of, flat).reshape(shape)
 
 
-def _empty(dims: tuple[str, ...], sizes: Mapping[str, int], axes: Sequence[str]) -> Field:
-    """A field to be filled, with positions along axes."""
-    shape = [sizes[name] for name in dims]
-    places = {axis: np.empty(shape) for axis in axes}
-    return Field(dims, np.empty(shape), np.empty(shape, np.int64), places)
+def _empty(dims: Sequence[str], sizes: Mapping[str, int], axes: Sequence[str], kind: str) -> Field:
+    """A field to be filled, of values that are reduced along axes."""
+    left = tuple(name for name in dims if name not in axes)
+    shape = [sizes[name] for name in left]
+    places = {axis: np.empty(shape) for axis in axes} if kind_of(kind).score else {}
+    return Field(left, np.empty(shape), np.empty(shape, np.int64), places)
 
 
 def _fill(field: Field, region: tuple[slice, ...], part: Field) -> None:
