@@ -56,7 +56,7 @@ def test_peaks_of_blocks_are_those_of_the_whole():
         ("peaks", 1e-4),  # the best of 720 angles
         ("derivatives", 1e-12),
         ("motors", 1e-12),
-        ("rubbing", 0.0),
+        ("rubbing", 1e-12),
         ("generated-forces-points", 1e-12),
         pytest.param("motions", 1e-7, marks=pytest.mark.thorough),
         pytest.param("steady", 1e-9, marks=pytest.mark.thorough),

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from contextlib import suppress
 from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
-from functools import cached_property
 from math import copysign, inf, sqrt
 from typing import Any, NamedTuple
 
@@ -11,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.messages import Message, named
+from ..support.computed import computed_once
 from ..support.deadline import Deadline
 from .drive import FunctionCurve
 from .events import (
@@ -225,7 +225,7 @@ class March:
         """Record an event at the current instant."""
         self.events.append(Event(kind, self.t, now.theta, now.omega, which))
 
-    @cached_property
+    @computed_once
     def record(self) -> Record:
         """All panels of the motion, which has ended."""
         heads, series, rates, ends = map(np.concatenate, zip(*self._kept, strict=True))
@@ -244,7 +244,7 @@ class March:
         drive = self.model.drive.ahead(*state_of(self.model, q, v), direction)
         return Law(self.model, drive, direction, side, pressed)
 
-    @cached_property
+    @computed_once
     def panels(self) -> list[Panel]:
         """The panels of the motion, which has ended."""
         record = self.record
