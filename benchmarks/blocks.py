@@ -29,7 +29,7 @@ def in_blocks(inputs: Inputs, answer: Answer, outputs: int) -> Iterator[tuple[sl
     What does not depend on the first axis is written once.
     """
     step, later, broadcast = rows_at_once(inputs), inputs.shape[1:], inputs.broadcast()
-    rows, found = np.empty((len(broadcast), block_size(inputs))), np.empty((outputs, block_size(inputs)))
+    rows, result = np.empty((len(broadcast), block_size(inputs))), np.empty((outputs, block_size(inputs)))
     for start in range(0, inputs.shape[0], step):
         part = slice(start, min(start + step, inputs.shape[0]))
         for name, row in zip(broadcast, rows, strict=True):
@@ -38,14 +38,14 @@ def in_blocks(inputs: Inputs, answer: Answer, outputs: int) -> Iterator[tuple[sl
                 row.reshape(step, *later)[:steps] = broadcast[name][part]
             elif start == 0:
                 row.reshape(step, *later)[...] = broadcast[name]
-        answer(rows, found)
-        yield part, found.reshape(outputs, step, *later)[:, : part.stop - part.start]
+        answer(rows, result)
+        yield part, result.reshape(outputs, step, *later)[:, : part.stop - part.start]
 
 
 def filled(inputs: Inputs, answer: Answer, out: Sequence[Array]) -> Sequence[Array]:
     """Fill `out` at all points, block by block."""
-    for part, found in in_blocks(inputs, answer, len(out)):
-        for place, row in zip(out, found, strict=True):
+    for part, result in in_blocks(inputs, answer, len(out)):
+        for place, row in zip(out, result, strict=True):
             place[part] = row
     return out
 
@@ -53,6 +53,6 @@ def filled(inputs: Inputs, answer: Answer, out: Sequence[Array]) -> Sequence[Arr
 def peaks(inputs: Inputs, answer: Answer) -> Sequence[Array]:
     """The largest magnitude along the last axis, and where, block by block."""
     best, angles = np.empty(inputs.shape[0]), np.empty(inputs.shape[0])
-    for part, found in in_blocks(inputs, answer, 1):
-        best[part], angles[part] = largest(found[0], inputs)
+    for part, result in in_blocks(inputs, answer, 1):
+        best[part], angles[part] = largest(result[0], inputs)
     return [best, angles]

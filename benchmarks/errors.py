@@ -21,12 +21,12 @@ SEED = 1
 
 def cases(family: str, count: int) -> list[Case]:
     """Points of a family with their truth; values whose digits the inputs excuse are judged so."""
-    found = []
+    result = []
     for drawn in points(family, count, SEED):
         point = {**drawn, "omega0": OMEGA0, "alpha": 0.0, "branch": 1}
         bounds = {name: ULPS * (1 + conditions(name, **point)) for name in NAMES}
-        found.append(Case(point, truth_all(NAMES, **point), bounds, dict.fromkeys(NAMES, 0.0)))
-    return found
+        result.append(Case(point, truth_all(NAMES, **point), bounds, dict.fromkeys(NAMES, 0.0)))
+    return result
 
 
 def judged(contender: Contender, racer: Racer | None) -> Judged:
@@ -52,4 +52,4 @@ def judged(contender: Contender, racer: Racer | None) -> Judged:
 def errors(contender: Contender, racer: Racer, families: dict[str, list[Case]]) -> dict[str, Statistics]:
     """Family -> the errors there."""
     judge = Judge(judged(contender, racer))
-    return {family: judge.statistics(found) for family, found in families.items()}
+    return {family: judge.statistics(result) for family, result in families.items()}

@@ -29,14 +29,14 @@ def forms(names: Sequence[str], inputs: Inputs) -> list[sp.Expr]:
     numbers = {symbol(name): sp.Float(value) for name, value in inputs.scalars.items() if name != "omega0"}
     numbers = {name: sp.Integer(0) if value == 0 else value for name, value in numbers.items()}
     fixed = {symbol("alpha"): sp.Integer(0), symbol("omega0"): forwards, **numbers}
-    found = [_without_turning(form.subs(fixed), forwards, inputs) for form in expressions(names, 1)]
+    result = [_without_turning(form.subs(fixed), forwards, inputs) for form in expressions(names, 1)]
     spent[0] += time.perf_counter() - started
-    return found
+    return result
 
 
 def _without_turning(form: sp.Expr, forwards: sp.Symbol, inputs: Inputs) -> sp.Expr:
-    found = form.replace(lambda part: part.func.__name__ == "copysign", lambda _: sp.Integer(1))
-    return found.subs(forwards, sp.Float(inputs.scalars["omega0"]))
+    result = form.replace(lambda part: part.func.__name__ == "copysign", lambda _: sp.Integer(1))
+    return result.subs(forwards, sp.Float(inputs.scalars["omega0"]))
 
 
 def lambdified(names: Sequence[str], inputs: Inputs, modules: Any) -> Callable[..., Any]:

@@ -17,18 +17,18 @@ WORK = BY_KEY["point"]
 
 def growth(who: Mapping[str, Racer], sizes: tuple[int, ...], rounds: int) -> dict[str, dict[str, float]]:
     """Size -> name -> seconds for all its points."""
-    found: dict[str, dict[str, float]] = {}
+    result: dict[str, dict[str, float]] = {}
     for size in (size for size in sizes if size <= MILLION):
         raced = race(who, WORK, size, rounds)
-        found[str(size)] = {name: one.seconds for name, one in raced.items() if isinstance(one, Found)}
+        result[str(size)] = {name: one.seconds for name, one in raced.items() if isinstance(one, Found)}
     large = [size for size in sizes if size > MILLION]
     for name, racer in who.items() if large else ():
         try:
             racer.ask("prepare", WORK.key, MILLION)
             once = racer.ask("round")
             for size in (size for size in large if once * size < LONGEST * MILLION):
-                found.setdefault(str(size), {})[name] = racer.ask("again", size // MILLION)
+                result.setdefault(str(size), {})[name] = racer.ask("again", size // MILLION)
             racer.ask("forget")
         except RefusedError:
             continue
-    return found
+    return result

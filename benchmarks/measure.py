@@ -78,7 +78,7 @@ def measure(works: Sequence[Work], effort: Effort, watch: Progress | None = None
             steps.next("errors")
             judged = {family: cases(family, effort.judged) for family in FAMILIES}
             data["errors"] = {
-                one.name: {f: list(found) for f, found in errors(one, who[one.name], judged).items()}
+                one.name: {f: list(result) for f, result in errors(one, who[one.name], judged).items()}
                 for one in here
             }
             if whole:
@@ -109,9 +109,9 @@ def measure(works: Sequence[Work], effort: Effort, watch: Progress | None = None
     return data
 
 
-def _plain(found: dict[str, Found | str]) -> Data:
+def _plain(result: dict[str, Found | str]) -> Data:
     """The measurements as plain data for JSON."""
-    return {n: one._asdict() if isinstance(one, Found) else {"refused": one} for n, one in found.items()}
+    return {n: one._asdict() if isinstance(one, Found) else {"refused": one} for n, one in result.items()}
 
 
 def _operations(work: Work) -> int:

@@ -61,13 +61,13 @@ class Racer:
 @contextmanager
 def racers(contenders: Iterable[Contender], cores: Sequence[int]) -> Iterator[dict[str, Racer]]:
     """A process for each contender, all on the same cores."""
-    found = {one.name: Racer(one, cores) for one in contenders}
+    result = {one.name: Racer(one, cores) for one in contenders}
     try:
-        for one in found.values():
+        for one in result.values():
             one.wait()
-        yield found
+        yield result
     finally:
-        for one in found.values():
+        for one in result.values():
             one.stop()
 
 
@@ -76,22 +76,22 @@ def race(who: Mapping[str, Racer], work: Work, count: int, rounds: int) -> dict[
 
     The order changes from round to round: who comes after a slow one finds the caches cold.
     """
-    found: dict[str, Found | str] = {}
+    result: dict[str, Found | str] = {}
     for name, racer in who.items():
         try:
             first = racer.ask("prepare", work.key, count)
-            found[name] = Found(racer.ask("round"), first, racer.ask("memory"))
+            result[name] = Found(racer.ask("round"), first, racer.ask("memory"))
         except RefusedError as refused:
-            found[name] = str(refused)
-    turns, spent = [n for n, one in found.items() if isinstance(one, Found)], dict.fromkeys(found, 0.0)
+            result[name] = str(refused)
+    turns, spent = [n for n, one in result.items() if isinstance(one, Found)], dict.fromkeys(result, 0.0)
     for number in range(rounds):
         random.Random(number).shuffle(turns)
         for name in turns:
-            one = found[name]
+            one = result[name]
             if isinstance(one, Found) and (number < FEWEST or spent[name] < PATIENCE):
                 seconds = who[name].ask("round")
                 spent[name] += seconds
-                found[name] = one._replace(seconds=min(one.seconds, seconds))
+                result[name] = one._replace(seconds=min(one.seconds, seconds))
     for name in turns:
         who[name].ask("forget")
-    return found
+    return result

@@ -71,9 +71,9 @@ def short_table(data: Data) -> str:
     rows = []
     for name in [*data["who"], LIMITS]:
         cells = [_ratio(data["one core"][key], name) for key in SHOWN]
-        found = data["errors"].get(name)
+        result = data["errors"].get(name)
         rows.append(
-            [name, *cells, *(_share(found[f][0]) if found else "" for f in ("generic", "change_point"))]
+            [name, *cells, *(_share(result[f][0]) if result else "" for f in ("generic", "change_point"))]
         )
     return table(head, rows)
 
@@ -120,7 +120,7 @@ def digits(x: float) -> str:
 
 def by_contender(data: Data, works: Mapping[str, Any]) -> str:
     """A row for each contender, a column for each work, and what the columns are."""
-    rows = [[name, *(_ratio(found, name) for found in works.values())] for name in [*data["who"], LIMITS]]
+    rows = [[name, *(_ratio(result, name) for result in works.values())] for name in [*data["who"], LIMITS]]
     titles = "\n".join(f"* **{key}**: {BY_KEY[key].title}{_many(data, key)}" for key in works)
     return f"{table(['', *works], rows)}\n\n{titles}"
 
@@ -147,21 +147,21 @@ def _absent(data: Data) -> str:
 
 
 def _refusals(works: Mapping[str, Any]) -> str:
-    told = [
-        f"* {name} did not do `{key}`: {found['refused']}"
+    message = [
+        f"* {name} did not do `{key}`: {result['refused']}"
         for key, raced in works.items()
-        for name, found in raced.items()
-        if "refused" in found
+        for name, result in raced.items()
+        if "refused" in result
     ]
-    return "\n".join(told)
+    return "\n".join(message)
 
 
 def _errors(data: Data) -> str:
     families = list(next(iter(data["errors"].values())))
     head = ["worst error (median)", *(name.replace("_", " ") for name in families)]
     rows = [
-        [name, *(f"{_share(found[f][0])} ({_share(found[f][1])})" for f in families)]
-        for name, found in data["errors"].items()
+        [name, *(f"{_share(result[f][0])} ({_share(result[f][1])})" for f in families)]
+        for name, result in data["errors"].items()
     ]
     return (
         f"{table(head, rows)}\n\n"
@@ -210,7 +210,7 @@ def _operations(data: Data) -> str:
 
 
 def _growth(data: Data) -> str:
-    sizes = [size for size, found in data["growth"].items() if STANDARD in found]
+    sizes = [size for size, result in data["growth"].items() if STANDARD in result]
     rows = [
         [
             name,
@@ -224,7 +224,7 @@ def _growth(data: Data) -> str:
 def _starts(data: Data) -> str:
     """Compile times in seconds beyond desaxe's, memory in megabytes beyond the result's own."""
     works = {
-        key: found for key, found in data["one core"].items() if key in ("point", "first", "grid", "peak")
+        key: result for key, result in data["one core"].items() if key in ("point", "first", "grid", "peak")
     }
     head = ["", *(f"compile {key}" for key in works), *(f"memory {key}" for key in works)]
     began = data.get("starts", {})
@@ -232,8 +232,8 @@ def _starts(data: Data) -> str:
         head += ["first start", "second start"]
     rows = []
     for name in data["who"]:
-        cells = [digits(_over(found, name, "first")) for found in works.values()]
-        cells += [_megabytes(found.get(name, {})) for found in works.values()]
+        cells = [digits(_over(result, name, "first")) for result in works.values()]
+        cells += [_megabytes(result.get(name, {})) for result in works.values()]
         cells += [
             digits(began[name][when] / began[STANDARD]["second"]) for when in ("first", "second") if began
         ]
@@ -246,13 +246,13 @@ def _starts(data: Data) -> str:
     )
 
 
-def _over(found: Mapping[str, Any], name: str, what: str) -> float:
-    mine, base = found.get(name, {}).get(what), found.get(STANDARD, {}).get(what)
+def _over(result: Mapping[str, Any], name: str, what: str) -> float:
+    mine, base = result.get(name, {}).get(what), result.get(STANDARD, {}).get(what)
     return mine / base if mine and base else float("nan")
 
 
-def _megabytes(found: Mapping[str, Any]) -> str:
-    return f"{max(0.0, found['memory']):.0f}" if "memory" in found else ""
+def _megabytes(result: Mapping[str, Any]) -> str:
+    return f"{max(0.0, result['memory']):.0f}" if "memory" in result else ""
 
 
 def _calls(data: Data) -> str:
@@ -281,13 +281,13 @@ def _bounds(data: Data) -> str:
         return ""
     turns = 1024 * TURNS
     for key, load in data.get("load", {}).items():
-        found = data["one core"].get(key, {})
-        seconds = found.get(STANDARD, {}).get("seconds")
+        result = data["one core"].get(key, {})
+        seconds = result.get(STANDARD, {}).get("seconds")
         if not seconds:
             continue
         points = data["points"][key]
         memory = limits["copy"] / MEMORY * load["bytes"] / (2 * DOUBLE)
-        filled = found.get(LIMITS, {}).get("seconds", 0.0) / points
+        filled = result.get(LIMITS, {}).get("seconds", 0.0) / points
         memory = memory if BY_KEY[key].given else filled
         issue = load["slots"] * limits["multiply_add"] / (turns * DEGREE)
         issue += load["divisions"] * limits["divide"] / turns + load["roots"] * limits["sqrt"] / turns
@@ -313,7 +313,7 @@ def _bounds(data: Data) -> str:
 def _limits(data: Data) -> str:
     each = {key: seconds / (1024 * TURNS) for key, seconds in data["limits"].items()}
     raced = {key: data["one core"].get(key, {}) for key in ("concentric", "point", "first")}
-    known = [(key, found.get(STANDARD, {}).get("seconds")) for key, found in raced.items()]
+    known = [(key, result.get(STANDARD, {}).get("seconds")) for key, result in raced.items()]
     rows = [
         [BY_KEY[limit].title, *(digits(s / data["points"][key] / each[limit]) for key, s in known if s)]
         for limit in each

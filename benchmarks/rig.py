@@ -9,8 +9,8 @@ from typing import Any
 def timed(run: Callable[[], Any], clock: Callable[[], float] = time.perf_counter) -> tuple[float, Any]:
     """Seconds of a call, and what it returns."""
     started = clock()
-    found = run()
-    return clock() - started, found
+    result = run()
+    return clock() - started, result
 
 
 def in_turns(runs: Mapping[str, Callable[[], Any]], rounds: int, seed: int = 0) -> dict[str, float]:

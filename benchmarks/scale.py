@@ -110,27 +110,27 @@ def measured(spec: dict[str, Any]) -> dict[str, float]:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(done.stderr)
-    found: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
-    return found
+    result: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
+    return result
 
 
 def all_measured(seconds: float, at: str) -> dict[str, Any]:
     """Every table of the page."""
-    found: dict[str, Any] = {"load": os.getloadavg()[0], "free": shutil.disk_usage(at).free}
-    found["stored"] = _grown("stored", 10**6, 10**9, seconds, at)
-    found["reduced"] = _grown("reduced", 10**7, 10**10, seconds, at)
+    result: dict[str, Any] = {"load": os.getloadavg()[0], "free": shutil.disk_usage(at).free}
+    result["stored"] = _grown("stored", 10**6, 10**9, seconds, at)
+    result["reduced"] = _grown("reduced", 10**7, 10**10, seconds, at)
     theta = inputs(10**6)["theta"].size
     times = []
     for count in (FEW_CHUNKS, MANY_CHUNKS):
         spec = {"kind": "stored", "points": 10**6, "chunk": -(-theta // count), "threads": 1, "at": at}
         times.append(min(measured(dict(spec))["seconds"] for _ in range(3)))
-    found["chunk"] = (times[1] - times[0]) / (MANY_CHUNKS - FEW_CHUNKS)
-    found["workers"] = {}
+    result["chunk"] = (times[1] - times[0]) / (MANY_CHUNKS - FEW_CHUNKS)
+    result["workers"] = {}
     for workers in (1, 2):
         spec = {"kind": "workers", "points": WORKERS_POINTS, "workers": workers}
-        found["workers"][workers] = measured(spec)
-        print("workers", found["workers"][workers], file=sys.stderr)
-    return found
+        result["workers"][workers] = measured(spec)
+        print("workers", result["workers"][workers], file=sys.stderr)
+    return result
 
 
 def _grown(kind: str, points: int, most: int, seconds: float, at: str) -> list[dict[str, float]]:
@@ -160,15 +160,17 @@ def _lookout(rows: list[dict[str, float]], points: float, stored: bool) -> str:
     return f"{points:.0e} points {time}{disk} ({'measured' if share < 1.1 else 'extrapolated'})"
 
 
-def text_of(found: dict[str, Any]) -> str:
+def text_of(result: dict[str, Any]) -> str:
     """The measured part of the page."""
-    one, two = (found["workers"][k]["seconds"] for k in (1, 2))
-    last = found["stored"][-1]
-    rate, chunk = last["points"] / last["seconds"], found["chunk"]
-    quiet = found["load"] < 0.7
-    state = "with nothing else to do" if quiet else f"while it had other work (a load of {found['load']:.1f})"
+    one, two = (result["workers"][k]["seconds"] for k in (1, 2))
+    last = result["stored"][-1]
+    rate, chunk = last["points"] / last["seconds"], result["chunk"]
+    quiet = result["load"] < 0.7
+    state = (
+        "with nothing else to do" if quiet else f"while it had other work (a load of {result['load']:.1f})"
+    )
     noise = "" if quiet else ": times vary by half between runs, memory and disk do not"
-    stored = [_lookout(found["stored"], points, True) for points in (1e9, 1e10)]
+    stored = [_lookout(result["stored"], points, True) for points in (1e9, 1e10)]
     return "\n".join([
         BEGIN,
         "",
@@ -182,7 +184,7 @@ def text_of(found: dict[str, Any]) -> str:
         *(
             f"| {row['points']:.0e} | {row['seconds']:.1f} s | {row['points'] / row['seconds']:.1e} | "
             f"{row['memory'] / 1e6:.0f} MB | {row['disk'] / 1e6:,.0f} MB |"
-            for row in found["stored"]
+            for row in result["stored"]
         ),
         "",
         "Reduced: the largest magnitude over 720 angles of each design, its angle, and what was skipped.",
@@ -192,11 +194,11 @@ def text_of(found: dict[str, Any]) -> str:
         *(
             f"| {row['points']:.0e} | {row['seconds']:.1f} s | {row['points'] / row['seconds']:.1e} | "
             f"{row['memory'] / 1e6:.0f} MB |"
-            for row in found["reduced"]
+            for row in result["reduced"]
         ),
         "",
         f"Workers: {len(SENSITIVE)} names, first and second sensitivities among them, reduced over "
-        f"{found['workers'][1]['points']:.0e} points: {one:.1f} s on one Dask worker, {two:.1f} s on two, "
+        f"{result['workers'][1]['points']:.0e} points: {one:.1f} s on one Dask worker, {two:.1f} s on two, "
         f"{one / two:.2f} times as fast.",
         "",
         f"A chunk costs {1e3 * chunk:.0f} ms besides its points: to hand it out, look whether it is "
@@ -204,9 +206,9 @@ def text_of(found: dict[str, Any]) -> str:
         "",
         "What follows, at these rates:",
         "",
-        f"* Stored: {', '.join(stored)}; {found['free'] / 1e9:.0f} GB were free here. "
+        f"* Stored: {', '.join(stored)}; {result['free'] / 1e9:.0f} GB were free here. "
         "Memory does not grow with the points.",
-        f"* Reduced: {_lookout(found['reduced'], 1e10, False)}, and next to no disk: reduce, or ask for the "
+        f"* Reduced: {_lookout(result['reduced'], 1e10, False)}, and next to no disk: reduce, or ask for the "
         "best designs, unless every point is wanted.",
         f"* The cost of chunks is {_share(chunk, 1e6, rate)} of a stored sweep with a million points a "
         f"chunk, {_share(chunk, 1e4, rate)} with ten thousand.",

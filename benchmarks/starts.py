@@ -23,13 +23,13 @@ CACHES = ("XDG_CACHE_HOME", "NUMBA_CACHE_DIR")
 
 def starts(contenders: Sequence[Contender], core: int, rounds: int) -> dict[str, dict[str, float]]:
     """Name -> seconds of a first start and of a second one, the best of some."""
-    found = {one.name: {"first": float("inf"), "second": float("inf")} for one in contenders}
+    result = {one.name: {"first": float("inf"), "second": float("inf")} for one in contenders}
     for _ in range(rounds):
         for one in contenders:
             with tempfile.TemporaryDirectory() as folder:
                 for when in ("first", "second"):
-                    found[one.name][when] = min(found[one.name][when], _start(one.name, core, folder))
-    return found
+                    result[one.name][when] = min(result[one.name][when], _start(one.name, core, folder))
+    return result
 
 
 def _start(name: str, core: int, folder: str) -> float:

@@ -94,7 +94,7 @@ def seconds(call: str, cache: str) -> tuple[float, float]:
 
 def measure(rounds: int) -> dict[str, dict[str, float]]:
     """Call -> seconds of a first call, of the slowest one that follows, and of one in a second process."""
-    found = {}
+    result = {}
     for name, call in CALLS.items():
         first = []
         for _ in range(rounds):
@@ -104,16 +104,16 @@ def measure(rounds: int) -> dict[str, dict[str, float]]:
             seconds(call, kept)
             second = min(seconds(call, kept)[0] for _ in range(2 * rounds))
         begin, later = (min(column) for column in zip(*first, strict=True))
-        found[name] = {"first": begin, "later": later, "second": second}
-    return found
+        result[name] = {"first": begin, "later": later, "second": second}
+    return result
 
 
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.startup", description=__doc__)
     parser.add_argument("--rounds", type=int, default=2)
-    found = measure(parser.parse_args().rounds)
-    for name, times in found.items():
+    result = measure(parser.parse_args().rounds)
+    for name, times in result.items():
         first, later, second = (times[key] for key in ("first", "later", "second"))
         print(f"{name:60} first {first:6.2f} s   later {later:7.4f} s   second process {second:6.3f} s")
 

@@ -73,22 +73,22 @@ def motions(drawn: Designs, drive: Designs, rtol: float, t_end: float) -> Histor
     """theta and omega of motions at the instants."""
     times = t_end * np.arange(1, INSTANTS + 1) / INSTANTS
     how = {"times": times, "threads": 1}
-    found = dx.simulate(t_end=t_end, rtol=rtol, **how, **{**drawn, **drive})
-    return np.atleast_2d(found["theta"]), np.atleast_2d(found["omega"])
+    result = dx.simulate(t_end=t_end, rtol=rtol, **how, **{**drawn, **drive})
+    return np.atleast_2d(result["theta"]), np.atleast_2d(result["omega"])
 
 
 def errors(kind: str, count: int, rtol: float, seed: int, t_end: float = 1.0) -> Array:
     """The relative errors of theta and omega of random motions of a kind, a column for each."""
-    truth, found = (_ends(kind, count, seed, one, t_end) for one in (LEAST_RTOL, rtol))
+    truth, result = (_ends(kind, count, seed, one, t_end) for one in (LEAST_RTOL, rtol))
     changed = _ends(kind, count, seed, 1e-9, t_end, 1.0 + CHANGE)
     steady = _relative(changed, truth).max(axis=1) < MOST * CHANGE
-    return _relative(found, truth)[steady]
+    return _relative(result, truth)[steady]
 
 
-def _relative(found: Histories, truth: Histories) -> Array:
+def _relative(result: Histories, truth: Histories) -> Array:
     sizes = [np.abs(part).max(axis=1) for part in truth]
     sizes[0] = np.maximum(sizes[0], 1.0)
-    parts = zip(found, truth, sizes, strict=True)
+    parts = zip(result, truth, sizes, strict=True)
     return np.stack([np.abs(a - b).max(axis=1) / size for a, b, size in parts], axis=1)
 
 
@@ -120,8 +120,8 @@ def main() -> None:
     for kind in options.kind or KINDS:
         count = options.motions if KINDS[kind][1] else max(1, options.motions // 10)
         for rtol in (1e-6, 1e-8, 1e-10, 1e-12):
-            found = errors(kind, count, rtol, options.seed, options.t_end) / rtol
-            shown = " | ".join(f"{np.median(one):.2g} | {one.max():.2g}" for one in found.T)
+            result = errors(kind, count, rtol, options.seed, options.t_end) / rtol
+            shown = " | ".join(f"{np.median(one):.2g} | {one.max():.2g}" for one in result.T)
             print(f"| {kind} | {rtol:g} | {shown} |", flush=True)
 
 

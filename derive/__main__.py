@@ -48,10 +48,10 @@ def main(arguments: list[str] | None = None) -> int:
         print(report(derivation))
         return 0
     if options.check:
-        found = differences(files, folder)
-        print(f"{folder.name}/ is {'stale: run ' + REMEDY if found else 'fresh'}")
-        sys.stdout.write(in_brief(found))
-        return 1 if found else 0
+        result = differences(files, folder)
+        print(f"{folder.name}/ is {'stale: run ' + REMEDY if result else 'fresh'}")
+        sys.stdout.write(in_brief(result))
+        return 1 if result else 0
     changed = write(files, folder)
     print(f"wrote {', '.join(changed)}" if changed else f"{folder.name}/ was fresh: nothing written")
     return 0

@@ -120,10 +120,10 @@ def _keep_needs(sheet: Sheet, name: str, base: str) -> None:
 
     A force is one of the whole mechanism, even where its formula has the crank alone.
     """
-    wanted, own = set(sheet.ordered((base,))), set(sheet.ordered((name,)))
+    requested, own = set(sheet.ordered((base,))), set(sheet.ordered((name,)))
     if base in FORCES and base not in LUMPS:
-        wanted |= {"D"} if base not in FRAME else {"D", "N_C"}
-    lost = [KEEPS[what] for what in KEEPS if what in wanted and what not in own and KEEPS[what] not in own]
+        requested |= {"D"} if base not in FRAME else {"D", "N_C"}
+    lost = [KEEPS[what] for what in KEEPS if what in requested and what not in own and KEEPS[what] not in own]
     equation = sheet.equations[name]
     if lost and name not in FACTS:
         plain = equation.expression if equation.differentiate is None else equation.differentiate

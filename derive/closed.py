@@ -68,34 +68,34 @@ def _constant(value: float) -> sp.Expr:
 
 def _geometry(sector: "_Sector", branch: int, turning: int) -> list[tuple[str, sp.Expr]]:
     """Expressions that are 0: A, B, C in line at the dead centres, the sines of the rod at its extremes."""
-    found = []
+    result = []
     for which, reach in (("outer", AB + BC), ("inner", AB - BC)):  # from A to C, along the crank
         Y, name = sector[f"Y_{which}"], f"theta_{which}"
         sine, cosine = sector.sine_and_cosine(name)
         side = 1 if sector.numbers["rod_over"] < 0 or which == "outer" else -1  # the sign of the reach
-        found += [(name, side * sine + ec), (name, side * cosine - Y)]
-        found += [(f"Y_{which}", Y**2 + ec**2 - reach**2)]
+        result += [(name, side * sine + ec), (name, side * cosine - Y)]
+        result += [(f"Y_{which}", Y**2 + ec**2 - reach**2)]
     if not sector.numbers["can_turn"]:
-        return found
+        return result
     beta = sector["beta"]
-    found += [("stroke", branch * (sector["Y_outer"] - sector["Y_inner"]) - sector["stroke"])]
-    found += [("beta", sector.turned(beta, p) - sector.slopes[p]) for p in (ec, AB, BC)]
+    result += [("stroke", branch * (sector["Y_outer"] - sector["Y_inner"]) - sector["stroke"])]
+    result += [("beta", sector.turned(beta, p) - sector.slopes[p]) for p in (ec, AB, BC)]
     (so, co), (si, ci) = (sector.sine_and_cosine(f"theta_{which}") for which in ("outer", "inner"))
     y, x = sector.angles[beta]  # beta is pi less the angle from the outer to the inner dead centre
-    found += [("beta", branch * (si * co - ci * so) * x + (ci * co + si * so) * y)]
-    found += [("advance_angle", sector["advance_angle"] - sp.pi - branch * turning * beta)]
-    found += [("return_angle", sector["advance_angle"] + sector["return_angle"] - 2 * sp.pi)]
+    result += [("beta", branch * (si * co - ci * so) * x + (ci * co + si * so) * y)]
+    result += [("advance_angle", sector["advance_angle"] - sp.pi - branch * turning * beta)]
+    result += [("return_angle", sector["advance_angle"] + sector["return_angle"] - 2 * sp.pi)]
     side = 1 if sector.numbers["offset"] > 0 else -1
     longer = sp.pi + side * beta
-    found += [("time_ratio", sector["time_ratio"] * (2 * sp.pi - longer) - longer)]
+    result += [("time_ratio", sector["time_ratio"] * (2 * sp.pi - longer) - longer)]
     least = side * ec - AB if sector.numbers["reach_in"] else sp.Integer(0)
     for pressure, transmission, lean in (("max", "min", AB + side * ec), ("min", "max", least)):
         name, unit = f"{pressure}_pressure_angle", sector["unit_length"]
         y, x = sector.angles[sector[name]]
-        found += [(name, y * unit - lean), (name, (x**2 + y**2) * unit**2 - BC**2)]
+        result += [(name, y * unit - lean), (name, (x**2 + y**2) * unit**2 - BC**2)]
         other = f"{transmission}_transmission_angle"
-        found += [(other, a - b) for a, b in zip((x, y), sector.angles[sector[other]], strict=True)]
-    return found
+        result += [(other, a - b) for a, b in zip((x, y), sector.angles[sector[other]], strict=True)]
+    return result
 
 
 class _Sector:

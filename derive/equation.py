@@ -70,13 +70,13 @@ def equation(name: str, form: str = "textbook") -> EquationText:
     if form not in FORMS:
         raise ValueError(f"form = {form!r}: it is one of {', '.join(FORMS)}")
     if form == "stable":
-        found = stable_form(name)
+        result = stable_form(name)
         derivatives = {
-            each: latex_name(each) for each in found.definitions if each == name or "_wrt_" in each
+            each: latex_name(each) for each in result.definitions if each == name or "_wrt_" in each
         }
-        latex = stable_latex(found, {**_names_in_latex(), **derivatives})
+        latex = stable_latex(result, {**_names_in_latex(), **derivatives})
         return EquationText(
-            name, found.expression, latex, known.unit, known.meaning, known.source, _steps(name)
+            name, result.expression, latex, known.unit, known.meaning, known.source, _steps(name)
         )
     if name in ("status", "margin"):
         expression = BC - AB - sp.Abs(ec) if name == "margin" else _status()
@@ -114,14 +114,14 @@ def closed_form(base: str) -> sp.Expr:
     angle = sp.asin(across / BC)
     crank = {"X": AB * sp.sin(theta), "Y": AB * sp.cos(theta)}
     if base == "phi":
-        found = angle
+        result = angle
     elif base in ("V_B", "a_B"):
         turns = 1 if base == "V_B" else 2
-        found = sp.sqrt(sp.Add(*(_rate(p, turns) ** 2 for p in crank.values())))
+        result = sp.sqrt(sp.Add(*(_rate(p, turns) ** 2 for p in crank.values())))
     elif base.startswith(("V_B_", "a_B_")):
-        found = _rate(crank[base[-1]], 1 if base[0] == "V" else 2)
+        result = _rate(crank[base[-1]], 1 if base[0] == "V" else 2)
     else:
-        found = {
+        result = {
             "Y": position,
             "omega": omega,
             "delta": sp.acos(across / BC),
@@ -134,9 +134,9 @@ def closed_form(base: str) -> sp.Expr:
             "a_C": _rate(position, 2),
             "j_C": _rate(position, 3),
         }.get(base)
-    if found is None:
+    if result is None:
         raise LookupError(f"{base} has no closed form here yet")
-    return sp.simplify(found) if base in ("V_B", "a_B") else found
+    return sp.simplify(result) if base in ("V_B", "a_B") else result
 
 
 def _whole(base: str) -> sp.Expr:
@@ -180,10 +180,10 @@ def _force(base: str) -> sp.Expr:
     wedge = -sp.diff(pushed, bodies.F_friction) * mu * sliding * pressed
     normal = smooth / (1 - wedge)
     friction = -mu * sliding * pressed * normal
-    found = {"N_C": normal, "F_friction": friction}.get(base)
-    if found is None:
-        found = bodies.solution()[base].subs(bodies.F_friction, friction)
-    return _in_parameters(found)
+    result = {"N_C": normal, "F_friction": friction}.get(base)
+    if result is None:
+        result = bodies.solution()[base].subs(bodies.F_friction, friction)
+    return _in_parameters(result)
 
 
 def _lump(base: str) -> sp.Expr:

@@ -52,12 +52,12 @@ def rod_partials() -> dict[tuple[str, sp.Symbol], sp.Expr]:
     By implicit differentiation of the rod's loop BC sin(phi) = u, BC cos(phi) = S.
     """
     unknown = sp.Matrix([phi, S])
-    found = {}
+    result = {}
     for parameter in (u, BC):
         rates = -ROD_CLOSURE.jacobian(unknown).inv() * ROD_CLOSURE.diff(parameter)
         for name, rate in zip(("phi", "S"), rates, strict=True):
             on_rod = sp.simplify(rate).subs(
                 {sp.tan(phi): u * r, sp.sin(phi): u / BC, sp.cos(phi): 1 / (r * BC)}
             )
-            found[name, parameter] = on_rod
-    return found
+            result[name, parameter] = on_rod
+    return result

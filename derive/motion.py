@@ -108,14 +108,14 @@ def _omega_rates() -> dict[tuple[str, ...], sp.Expr]:
 
 def _omega_second_rates() -> dict[tuple[str, ...], sp.Expr]:
     """From omega d2(omega) = d2(omega^2)/2 - d(omega) d(omega), over omega^3."""
-    found: dict[tuple[str, ...], sp.Expr] = {}
+    result: dict[tuple[str, ...], sp.Expr] = {}
     for p, q in combinations_with_replacement(MOVING, 2):
         first, second = symbol(p), symbol(q)
         numerator = LAW.diff(first, second) / 2 * LAW - LAW.diff(first) * LAW.diff(second) / 4
         value = sp.factor(numerator) / (omega2 * omega)
         # By theta and by omega0 these are 0 for every alpha = 0, at rest too.
-        found[p, q] = value if "alpha" in (p, q) else select(eq(alpha, 0), 0, value)
-    return found
+        result[p, q] = value if "alpha" in (p, q) else select(eq(alpha, 0), 0, value)
+    return result
 
 
 def _define_turning(sheet: Sheet, speed: sp.Symbol) -> None:

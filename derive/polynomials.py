@@ -57,14 +57,14 @@ def double_trigonometry() -> DoubleTrigonometry:
 
 def _in_words(coefficients: list[mpf]) -> tuple[tuple[float, ...], ...]:
     """Split each coefficient into as many doubles as its term needs."""
-    largest, found = (mp.pi / 4) ** 2, []
+    largest, result = (mp.pi / 4) ** 2, []
     for k, coefficient in enumerate(coefficients):
         size = abs(coefficient / coefficients[0]) * largest**k
         words: list[float] = []
         for _ in range(1 + sum(size >= step for step in DOUBLE_STEPS)):
             words.append(float(coefficient - sum(map(mpf, words))))
-        found.append(tuple(words))
-    return tuple(found)
+        result.append(tuple(words))
+    return tuple(result)
 
 
 def _parts(value: mpf, turns: int, count: int, bits: int = 53) -> tuple[float, ...]:

@@ -130,11 +130,11 @@ def _keeps_its_line(value: sp.Basic, is_named: bool, uses: int) -> bool:
 
 
 def _reached(definitions: dict[str, sp.Expr], name: str) -> dict[str, sp.Expr]:
-    wanted = {name}
+    requested = {name}
     for each, expression in reversed(definitions.items()):
-        if each in wanted:
-            wanted |= {str(part) for part in expression.free_symbols}
-    return {each: definitions[each] for each in definitions if each in wanted}
+        if each in requested:
+            requested |= {str(part) for part in expression.free_symbols}
+    return {each: definitions[each] for each in definitions if each in requested}
 
 
 def stable_latex(form: StableForm, latex: Mapping[str, str]) -> str:

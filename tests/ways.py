@@ -27,10 +27,10 @@ def one_by_one(name, theta, ec):
     return out
 
 
-def close(found, wanted):
+def close(result, expected):
     """To 4 ulp of the largest value: a kernel's sine may differ from the C library's by one."""
-    scale = np.nanmax(np.abs(wanted), initial=0.0)
-    return np.allclose(found, wanted, rtol=0, atol=4 * EPSILON * scale, equal_nan=True)
+    scale = np.nanmax(np.abs(expected), initial=0.0)
+    return np.allclose(result, expected, rtol=0, atol=4 * EPSILON * scale, equal_nan=True)
 
 
 def bits(dataset):

@@ -16,29 +16,29 @@ PAGE = "accuracy.md"
 def measure_accuracy(quick: bool, folder: Path | None) -> None:
     """Audit; the tables on stdout, and files if there is a folder for them."""
     with progress_bar() as watch:
-        found = audit(QUICK if quick else FULL, watch)
-    print(text(found), flush=True)
-    for path in write(found, folder) if folder is not None else ():
+        result = audit(QUICK if quick else FULL, watch)
+    print(text(result), flush=True)
+    for path in write(result, folder) if folder is not None else ():
         print(f"wrote {path}")
 
 
-def text(found: Audit) -> str:
+def text(result: Audit) -> str:
     """The tables of an audit as text for the terminal."""
     tables = {
         "time as a multiple of desaxe standard, errors as shares of its promise, and in plain ulp": overview(
-            found
+            result
         ),
-        "share of the promise, worst (median)": by_family(found, share_of),
-        "plain ulp, worst (median)": by_family(found, ulp_of),
+        "share of the promise, worst (median)": by_family(result, share_of),
+        "plain ulp, worst (median)": by_family(result, ulp_of),
     }
-    parts = [found.machine, *(f"{title}\n\n{rows}" for title, rows in tables.items())]
+    parts = [result.machine, *(f"{title}\n\n{rows}" for title, rows in tables.items())]
     return "\n\n".join(parts) + "\n"
 
 
-def write(found: Audit, folder: Path) -> list[Path]:
+def write(result: Audit, folder: Path) -> list[Path]:
     """accuracy.md and accuracy.png in a folder, which is made if need be."""
     page, picture = folder / PAGE, folder / PICTURE
     with write_whole(page, overwrite=True) as staged:
-        staged.write_text(report(found), encoding="utf-8")
-    save(draw(found), picture, dpi=130)
+        staged.write_text(report(result), encoding="utf-8")
+    save(draw(result), picture, dpi=130)
     return [page, picture]

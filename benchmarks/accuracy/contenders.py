@@ -35,12 +35,12 @@ class Contender(NamedTuple):
 
 def contenders() -> list[Contender]:
     """The contenders available here; heyoka only if it is installed."""
-    found = [Contender(f"desaxe {tier}", _desaxe(tier), "desaxe") for tier in ACCURACIES]
-    found += [Contender("NumPy lambdify", _numpy), Contender("numba", _numba)]
+    result = [Contender(f"desaxe {tier}", _desaxe(tier), "desaxe") for tier in ACCURACIES]
+    result += [Contender("NumPy lambdify", _numpy), Contender("numba", _numba)]
     if find_spec("heyoka") is not None:
-        found.append(Contender("heyoka", _heyoka(fast_math=False)))
-        found.append(Contender("heyoka fast math", _heyoka(fast_math=True)))
-    return [*found, Contender(f"mpmath {MPMATH_DIGITS} digits", _mpmath, "digits", few=True)]
+        result.append(Contender("heyoka", _heyoka(fast_math=False)))
+        result.append(Contender("heyoka fast math", _heyoka(fast_math=True)))
+    return [*result, Contender(f"mpmath {MPMATH_DIGITS} digits", _mpmath, "digits", few=True)]
 
 
 def _textbook() -> Any:

@@ -52,14 +52,14 @@ class Statistics(NamedTuple):
 
 def cases(family: str, count: int, seed: int, branches: Sequence[int]) -> list[Case]:
     """Seeded points of a family on these branches, with their truth."""
-    found = []
+    result = []
     drawn = (point for point in points(family, DRAWS * count, seed) if point["branch"] in branches)
     for point in islice(drawn, count):
         here: dict[str, Any] = dict(point)
         exact = {name: x for name, x in truth_all(NAMES, **here).items() if _is_a_double(x)}
         bounds = {name: ULPS * (1 + conditions(name, **here)) for name in exact}
-        found.append(Case(here, exact, bounds, {name: _scale(name, here) * FLOOR for name in exact}))
-    return found
+        result.append(Case(here, exact, bounds, {name: _scale(name, here) * FLOOR for name in exact}))
+    return result
 
 
 def _is_a_double(x: mpmath.mpf) -> bool:

@@ -56,31 +56,31 @@ PANELS = (
 )
 
 
-def draw(found: Audit) -> "Figure":
+def draw(result: Audit) -> "Figure":
     """Three panels, one for each measure."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=SIZE, layout="constrained")
     figure.suptitle(TITLE, fontsize=12)
     for panel, ax in zip(PANELS, figure.subplots(1, len(PANELS)), strict=True):
-        _scales(ax, found, panel)
+        _scales(ax, result, panel)
     marks = [
         figure.axes[0].plot([], [], MARKERS[kind], color=COLOURS[kind], markersize=7, label=text)[0]
         for kind, text in KINDS.items()
-        if any(one.kind == kind for one in found.who)
+        if any(one.kind == kind for one in result.who)
     ]
     figure.axes[0].legend(handles=marks, loc="upper right", bbox_to_anchor=(1.0, 0.78), frameon=False)
     figure.draw_without_rendering()  # now it is known how large the panels are
     for panel, ax in zip(PANELS, figure.axes, strict=True):
-        _points(ax, found, panel)
+        _points(ax, result, panel)
     return figure
 
 
-def _scales(ax: "Axes", found: Audit, panel: Panel) -> None:
+def _scales(ax: "Axes", result: Audit, panel: Panel) -> None:
     """Axes, promises and the top."""
     ax.set_xscale("log")
     ax.set_yscale("log")
-    ax.set_xlim(min(found.ratios.values()) / 6, max(found.ratios.values()) * 4)
+    ax.set_xlim(min(result.ratios.values()) / 6, max(result.ratios.values()) * 4)
     ax.set_ylim(LEAST, ABOVE * panel.top)
     kept = next(iter(panel.promises.values()))
     ax.axhspan(LEAST, kept, color=COLOURS["desaxe"], alpha=0.10, linewidth=0)
@@ -99,18 +99,18 @@ def _scales(ax: "Axes", found: Audit, panel: Panel) -> None:
         ax.spines[side].set_visible(False)
 
 
-def _points(ax: "Axes", found: Audit, panel: Panel) -> None:
+def _points(ax: "Axes", result: Audit, panel: Panel) -> None:
     """Draw the markers, the line through the unbeaten contenders, and the names."""
-    errors = {one.name: max(measures(found, one.name)[panel.measure], LEAST * 3) for one in found.who}
-    unbeaten = [name for name in errors if not beaten_by(found, name, panel.measure)]
-    front = sorted((found.ratios[name], errors[name]) for name in unbeaten)
+    errors = {one.name: max(measures(result, one.name)[panel.measure], LEAST * 3) for one in result.who}
+    unbeaten = [name for name in errors if not beaten_by(result, name, panel.measure)]
+    front = sorted((result.ratios[name], errors[name]) for name in unbeaten)
     ax.plot(*zip(*front, strict=True), color="0.6", linewidth=1.2, drawstyle="steps-post", zorder=1)
-    taken = [_around(ax, found.ratios[name], y) for name, y in errors.items()]
+    taken = [_around(ax, result.ratios[name], y) for name, y in errors.items()]
     words = {f"promise of {tier}": 1.9 * y for tier, y in panel.promises.items()}
     for text, y in {**words, "no digit right, or no number": 30 * panel.top}.items():
         taken.append(_remark(ax, y, text))
-    for one in found.who:
-        at = found.ratios[one.name], errors[one.name]
+    for one in result.who:
+        at = result.ratios[one.name], errors[one.name]
         ax.plot(*at, MARKERS[one.kind], color=COLOURS[one.kind], markersize=7, zorder=ORDER[one.kind])
         _name(ax, at, one.name.removeprefix("desaxe "), COLOURS[one.kind], taken)
 

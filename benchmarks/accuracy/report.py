@@ -15,27 +15,27 @@ PLAIN = "in plain ulp"
 CLEARLY = 0.95  # a time is shorter only if by this much: the rest is noise
 
 
-def report(found: Audit) -> str:
+def report(result: Audit) -> str:
     """The whole page."""
     parts = [
         "# Accuracy and time, measured",
         f"![Worst error over time, for every contender]({PICTURE})",
-        _made(found),
+        _made(result),
         file_text(__package__, "reading.txt").rstrip(),
         "## Overview",
-        overview(found),
-        "\n".join(_dominated(found)),
+        overview(result),
+        "\n".join(_dominated(result)),
         "## Share of the promise, worst (median)",
-        by_family(found, share_of),
+        by_family(result, share_of),
         "## Plain ulp, worst (median)",
-        by_family(found, ulp_of),
+        by_family(result, ulp_of),
         "## The families",
         "\n".join(f"* **{_title(name)}**: {_says(name)}" for name in FAMILIES),
     ]
     return "\n\n".join(parts) + "\n"
 
 
-def overview(found: Audit) -> str:
+def overview(result: Audit) -> str:
     """One row for each contender."""
     head = [
         "",
@@ -48,45 +48,46 @@ def overview(found: Audit) -> str:
         "anywhere",
     ]
     rows = []
-    for one in found.who:
-        generic, (family, share) = found.errors[one.name][GENERIC], found.hardest(one.name)
+    for one in result.who:
+        generic, (family, share) = result.errors[one.name][GENERIC], result.hardest(one.name)
         shares = [number(x, TOP / ULPS) for x in (generic.median, generic.worst, share)]
-        ulps = [number(x, TOP) for x in (generic.worst_ulp, found.worst_ulp(one.name))]
-        rows.append([one.name, _times(found, one.name), *shares[:2], _title(family), shares[2], *ulps])
+        ulps = [number(x, TOP) for x in (generic.worst_ulp, result.worst_ulp(one.name))]
+        rows.append([one.name, _times(result, one.name), *shares[:2], _title(family), shares[2], *ulps])
     return table(head, rows)
 
 
-def _made(found: Audit) -> str:
-    effort = found.effort
+def _made(result: Audit) -> str:
+    effort = result.effort
     branches = "both branches" if len(effort.branches) > 1 else "branch +1"
-    absent = "" if "heyoka" in found.ratios else " heyoka is not installed here, so it was not measured."
+    absent = "" if "heyoka" in result.ratios else " heyoka is not installed here, so it was not measured."
     return (
         "Made by `python -m benchmarks --accuracy --write`: "
         f"{', '.join(NAMES)} at {effort.points} points of each family, {branches},\n"
         f"seed {SEED}; time over {effort.timed} points, {effort.rounds} rounds. The truth is the loop\n"
         f"closure in ball arithmetic, which shares nothing with any contender. NumPy, numba, heyoka and\n"
         f"mpmath evaluate the textbook's closed form (`desaxe.equation`).{absent}\n\n"
-        f"{found.machine}."
+        f"{result.machine}."
     )
 
 
-def by_family(found: Audit, cell: Callable[[Statistics], str]) -> str:
+def by_family(result: Audit, cell: Callable[[Statistics], str]) -> str:
     """One row for each family, one column for each contender."""
-    head = ["", *(one.name for one in found.who)]
+    head = ["", *(one.name for one in result.who)]
     rows = [
-        [_title(family), *(cell(found.errors[one.name][family]) for one in found.who)] for family in FAMILIES
+        [_title(family), *(cell(result.errors[one.name][family]) for one in result.who)]
+        for family in FAMILIES
     ]
     return table(head, rows)
 
 
-def share_of(found: Statistics) -> str:
+def share_of(result: Statistics) -> str:
     """Worst and median share of the promise."""
-    return f"{number(found.worst, TOP / ULPS)} ({number(found.median, TOP / ULPS)})"
+    return f"{number(result.worst, TOP / ULPS)} ({number(result.median, TOP / ULPS)})"
 
 
-def ulp_of(found: Statistics) -> str:
+def ulp_of(result: Statistics) -> str:
     """Worst and median error in ulp."""
-    return f"{number(found.worst_ulp, TOP)} ({number(found.median_ulp, TOP)})"
+    return f"{number(result.worst_ulp, TOP)} ({number(result.median_ulp, TOP)})"
 
 
 def number(x: float, top: float) -> str:
@@ -105,39 +106,39 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return "\n".join([first, rule, *others])
 
 
-def measures(found: Audit, name: str) -> dict[str, float]:
+def measures(result: Audit, name: str) -> dict[str, float]:
     """The three errors that are drawn over time."""
-    generic = found.errors[name][GENERIC].worst
+    generic = result.errors[name][GENERIC].worst
     return {
         "at generic points": generic,
-        "in the hardest family": found.hardest(name)[1],
-        PLAIN: found.worst_ulp(name),
+        "in the hardest family": result.hardest(name)[1],
+        PLAIN: result.worst_ulp(name),
     }
 
 
-def beaten_by(found: Audit, name: str, measure: str) -> list[str]:
+def beaten_by(result: Audit, name: str, measure: str) -> list[str]:
     """Names of the contenders that are clearly faster and no less accurate."""
-    mine, limit = measures(found, name)[measure], CLEARLY * found.ratios[name]
-    return [n for n, time in found.ratios.items() if time <= limit and measures(found, n)[measure] <= mine]
+    mine, limit = measures(result, name)[measure], CLEARLY * result.ratios[name]
+    return [n for n, time in result.ratios.items() if time <= limit and measures(result, n)[measure] <= mine]
 
 
-def _dominated(found: Audit) -> Iterator[str]:
+def _dominated(result: Audit) -> Iterator[str]:
     """Lines that list, measure by measure, the contenders that another one dominates."""
     yield "Dominated: slower than another whose worst error is no larger (the fastest in brackets). Those"
     yield "with no digit right at some point are left out:\n"
-    for measure in measures(found, found.who[0].name):
+    for measure in measures(result, result.who[0].name):
         top = TOP if measure == PLAIN else TOP / ULPS
-        some = [name for name in found.ratios if measures(found, name)[measure] < top]
-        beaten = [name for name in some if beaten_by(found, name, measure)]
+        some = [name for name in result.ratios if measures(result, name)[measure] < top]
+        beaten = [name for name in some if beaten_by(result, name, measure)]
         by = [
-            f"{name} (by {min(beaten_by(found, name, measure), key=found.ratios.__getitem__)})"
+            f"{name} (by {min(beaten_by(result, name, measure), key=result.ratios.__getitem__)})"
             for name in beaten
         ]
         yield f"* {measure}: {'; '.join(by) or 'none'}"
 
 
-def _times(found: Audit, name: str) -> str:
-    ratio = found.ratios[name]
+def _times(result: Audit, name: str) -> str:
+    ratio = result.ratios[name]
     return f"{ratio:.2g}" if ratio < 100 else number(ratio, float("inf"))
 
 

@@ -47,7 +47,7 @@ class Audit(NamedTuple):
 
     def worst_ulp(self, name: str) -> float:
         """The largest error in ulp anywhere."""
-        return max(found.worst_ulp for found in self.errors[name].values())
+        return max(result.worst_ulp for result in self.errors[name].values())
 
 
 def audit(effort: Effort = FULL, watch: Callable[[int, int, str], None] | None = None) -> Audit:
@@ -61,9 +61,9 @@ def audit(effort: Effort = FULL, watch: Callable[[int, int, str], None] | None =
     for done, family in enumerate(FAMILIES, start=1):
         if watch:
             watch(done, total, family)
-        found = cases(family, effort.points, SEED, effort.branches)
+        result = cases(family, effort.points, SEED, effort.branches)
         for name, judge in judges.items():
-            errors[name][family] = judge.statistics(found)
+            errors[name][family] = judge.statistics(result)
     ratios = {name: seconds / taken["desaxe standard"] for name, seconds in taken.items()}
     return Audit(effort, _machine(who), tuple(who), ratios, errors)
 

@@ -19,8 +19,8 @@ def times(who: Sequence[Contender], count: int, rounds: int, seed: int) -> dict[
     inputs, outputs = _inputs(count, seed), np.empty((len(NAMES), count))
     few, few_outputs = np.ascontiguousarray(inputs[:, :FEW]), np.empty((len(NAMES), FEW))
     works = {one.name: (few, few_outputs) if one.few else (inputs, outputs) for one in who}
-    found = in_turns({one.name: partial(one.make(1), *works[one.name]) for one in who}, rounds, seed)
-    return {name: seconds / works[name][0].shape[1] for name, seconds in found.items()}
+    result = in_turns({one.name: partial(one.make(1), *works[one.name]) for one in who}, rounds, seed)
+    return {name: seconds / works[name][0].shape[1] for name, seconds in result.items()}
 
 
 def _inputs(count: int, seed: int) -> Array:

@@ -23,10 +23,10 @@ def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: in
     mapped = plain.map(count, "thread", threads) if threads > 1 else plain.map(count)
     buffer, trigger = mapped.buffer()
 
-    def answer(rows: Sequence[Array], found: Sequence[Array]) -> None:
+    def answer(rows: Sequence[Array], result: Sequence[Array]) -> None:
         for number, row in enumerate(rows):
             buffer.set_arg(number, memoryview(row))
-        for number, row in enumerate(found):
+        for number, row in enumerate(result):
             buffer.set_res(number, memoryview(row))
         trigger()
 

@@ -16,10 +16,10 @@ def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: in
     places = dict(zip(names, out, strict=True)) if out else None
 
     def values() -> Sequence[Array]:
-        found = dx.evaluate(
+        result = dx.evaluate(
             names, **inputs.broadcast(), **inputs.scalars, accuracy=accuracy, threads=threads, out=places
         )
-        return [found[name] for name in names]
+        return [result[name] for name in names]
 
     def prepared() -> Run:
         columns = inputs.columns
@@ -27,14 +27,14 @@ def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: in
         return lambda: call(*columns.values(), out=out)
 
     def grid() -> Sequence[Array]:
-        found = dx.grid(
+        result = dx.grid(
             names, **inputs.columns, **inputs.scalars, accuracy=accuracy, threads=threads, out=places
         )
-        return [np.asarray(found[name]) for name in names]
+        return [np.asarray(result[name]) for name in names]
 
     def peak() -> Sequence[Array]:
-        found = dx.peak(names[0], **inputs.columns, **inputs.scalars, accuracy=accuracy)
-        return [found["value"], found["theta"]]
+        result = dx.peak(names[0], **inputs.columns, **inputs.scalars, accuracy=accuracy)
+        return [result["value"], result["theta"]]
 
     if work.kind == "prepared":
         return prepared()

@@ -25,8 +25,8 @@ def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: in
     variables = [heyoka.expression(name) for name in points.columns]
     function = heyoka.cfunc(_expressions(work.names, points, variables), variables, fast_math=fast_math)
 
-    def answer(rows: Array, found: Array) -> None:
-        function(rows, outputs=found)
+    def answer(rows: Array, result: Array) -> None:
+        function(rows, outputs=result)
 
     if work.kind == "peak":
         return lambda: peaks(points, answer)
@@ -49,10 +49,10 @@ def _expressions(names: Sequence[str], points: Inputs, variables: list[Any]) -> 
     if not order:
         return values
     tensors = heyoka.diff_tensors(values, variables, diff_order=order)
-    found = {}
+    result = {}
     for number, quantity in enumerate(quantities):
         for wrt in (w for length in range(order + 1) for w in product(points.columns, repeat=length)):
-            found[quantity, tuple(sorted(wrt))] = tensors[
+            result[quantity, tuple(sorted(wrt))] = tensors[
                 [number, *(list(wrt).count(name) for name in points.columns)]
             ]
-    return [found[parts(name)[0], tuple(sorted(parts(name)[1]))] for name in names]
+    return [result[parts(name)[0], tuple(sorted(parts(name)[1]))] for name in names]

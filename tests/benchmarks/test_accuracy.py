@@ -34,34 +34,34 @@ def found():
 
 
 @pytest.mark.thorough
-def test_everyone_is_measured_in_every_family(found):
-    assert tuple(one.name for one in found.who) == tuple(found.ratios) == tuple(found.errors) == ALWAYS
-    assert all(list(families) == list(FAMILIES) for families in found.errors.values())
-    assert found.ratios["desaxe standard"] == 1.0
-    assert all(0 < ratio < math.inf for ratio in found.ratios.values())
+def test_everyone_is_measured_in_every_family(result):
+    assert tuple(one.name for one in result.who) == tuple(result.ratios) == tuple(result.errors) == ALWAYS
+    assert all(list(families) == list(FAMILIES) for families in result.errors.values())
+    assert result.ratios["desaxe standard"] == 1.0
+    assert all(0 < ratio < math.inf for ratio in result.ratios.values())
 
 
 @pytest.mark.thorough
-def test_standard_keeps_its_promise_at_generic_points(found):
-    generic = found.errors["desaxe standard"][GENERIC]
+def test_standard_keeps_its_promise_at_generic_points(result):
+    generic = result.errors["desaxe standard"][GENERIC]
     assert 0 < generic.median <= generic.worst <= 1
     assert generic.values == 6 * len(NAMES)
 
 
 @pytest.mark.thorough
-def test_extended_keeps_its_promise_at_generic_points(found):
-    assert found.errors["desaxe extended"][GENERIC].worst_ulp <= 2
+def test_extended_keeps_its_promise_at_generic_points(result):
+    assert result.errors["desaxe extended"][GENERIC].worst_ulp <= 2
 
 
 @pytest.mark.thorough
-def test_the_textbook_loses_its_digits_at_the_change_point(found):
-    textbook, ours = (found.errors[name]["change_point"] for name in ("NumPy lambdify", "desaxe standard"))
+def test_the_textbook_loses_its_digits_at_the_change_point(result):
+    textbook, ours = (result.errors[name]["change_point"] for name in ("NumPy lambdify", "desaxe standard"))
     assert ours.worst <= 1 < 1e6 < textbook.worst
 
 
 @pytest.mark.thorough
-def test_the_tables_have_all_rows(found):
-    page, shown = report(found), text(found)
+def test_the_tables_have_all_rows(result):
+    page, shown = report(result), text(result)
     for name in ALWAYS:
         assert f"\n| {name} " in page
         assert f"\n| {name} " in shown
@@ -69,29 +69,29 @@ def test_the_tables_have_all_rows(found):
         assert len(re.findall(rf"^\| {family.replace('_', ' ')} +\|", page, re.M)) == 2
         assert f"* **{family.replace('_', ' ')}**: " in page
     assert "heyoka is not installed here" in page
-    assert "CPU " in found.machine
-    assert "numba 0." in found.machine
+    assert "CPU " in result.machine
+    assert "numba 0." in result.machine
 
 
 @pytest.mark.thorough
-def test_the_files_are_written(found, tmp_path):
-    page, picture = write(found, tmp_path / "new" / "folder")
+def test_the_files_are_written(result, tmp_path):
+    page, picture = write(result, tmp_path / "new" / "folder")
     assert (page.name, picture.name) == ("accuracy.md", "accuracy.png")
-    assert page.read_text(encoding="utf-8") == report(found)
+    assert page.read_text(encoding="utf-8") == report(result)
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert sorted(path.name for path in page.parent.iterdir()) == ["accuracy.md", "accuracy.png"]
 
 
-def test_the_command(monkeypatch, capsys, tmp_path, found):
+def test_the_command(monkeypatch, capsys, tmp_path, result):
     asked = []
     monkeypatch.setattr(
-        "benchmarks.accuracy.command.audit", lambda effort, watch: asked.append(effort) or found
+        "benchmarks.accuracy.command.audit", lambda effort, watch: asked.append(effort) or result
     )
     monkeypatch.setattr("benchmarks.__main__.DOCS", tmp_path)
     monkeypatch.setattr("sys.argv", ["benchmarks", "--accuracy", "--quick", "--write"])
     main()
     assert asked == [QUICK]
-    assert capsys.readouterr().out.startswith(text(found))
+    assert capsys.readouterr().out.startswith(text(result))
     assert (tmp_path / "accuracy.png").is_file()
 
 
@@ -133,8 +133,8 @@ def exactly(some, inputs):
 
 def test_a_promise_counts_conditions():
     """At a dead centre V_C is nothing but the last digits of the inputs; a_C is not."""
-    found = cases("dead_centre", 12, 0, (1, -1))
-    assert sum(case.bounds["V_C"] > 1e9 * case.bounds["a_C"] for case in found) > 6
+    result = cases("dead_centre", 12, 0, (1, -1))
+    assert sum(case.bounds["V_C"] > 1e9 * case.bounds["a_C"] for case in result) > 6
 
 
 def test_cases_stay_on_the_branches_wanted():
@@ -159,11 +159,11 @@ def made_up(errors):
 
 
 def test_who_is_beaten_by_whom():
-    found = made_up({"quick": (1.0, 5.0), "slow": (2.0, 5.0), "exact": (9.0, 0.5), "noise": (0.99, 7.0)})
-    assert measures(found, "exact") == {
+    result = made_up({"quick": (1.0, 5.0), "slow": (2.0, 5.0), "exact": (9.0, 0.5), "noise": (0.99, 7.0)})
+    assert measures(result, "exact") == {
         "at generic points": 0.5, "in the hardest family": 1.0, "in plain ulp": 0.5
     }  # fmt: skip
-    beaten = {name: beaten_by(found, name, "in plain ulp") for name in found.ratios}
+    beaten = {name: beaten_by(result, name, "in plain ulp") for name in result.ratios}
     assert beaten == {"quick": [], "slow": ["quick"], "exact": [], "noise": []}
 
 

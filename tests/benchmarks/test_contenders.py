@@ -38,13 +38,13 @@ def point_of(inputs, index):
 @pytest.mark.parametrize("work", [work for work in WORKS if work.kind != "peak"], ids=lambda work: work.key)
 @pytest.mark.parametrize("contender", HERE, ids=lambda one: one.name)
 def test_values_are_the_truths(contender, work):
-    inputs, found = answers(contender, work)
-    assert len(found) == len(work.names)
-    assert all(array.shape == inputs.shape for array in found)
+    inputs, result = answers(contender, work)
+    assert len(result) == len(work.names)
+    assert all(array.shape == inputs.shape for array in result)
     corners = [tuple(0 for _ in inputs.shape), tuple(size - 1 for size in inputs.shape)]
     for index in [*corners, tuple(size // 3 for size in inputs.shape)]:
         point = point_of(inputs, index)
-        for name, array in zip(work.names, found, strict=True):
+        for name, array in zip(work.names, result, strict=True):
             size = scale(name, dict(point))
             assert array[index] == pytest.approx(float(exact(name, point)), **tolerance(size))
 
@@ -106,9 +106,9 @@ def test_the_machines_limits_compute_what_they_say(work):
     if work.key == "sincos":
         np.testing.assert_allclose(others[0], np.cos(x), rtol=1e-15)
     horner = np.polynomial.polynomial.polyval(x, [0.5] * DEGREE)
-    wanted = {"sqrt": np.sqrt(x), "divide": 1 / x, "sincos": np.sin(x), "copy": x}
-    wanted["multiply_add"] = horner + x ** (DEGREE + 1)
-    np.testing.assert_allclose(first, wanted[work.key], rtol=4e-16 if work.key != "multiply_add" else 1e-14)
+    expected = {"sqrt": np.sqrt(x), "divide": 1 / x, "sincos": np.sin(x), "copy": x}
+    expected["multiply_add"] = horner + x ** (DEGREE + 1)
+    np.testing.assert_allclose(first, expected[work.key], rtol=4e-16 if work.key != "multiply_add" else 1e-14)
 
 
 def test_a_missing_contender_is_told():

@@ -84,8 +84,8 @@ def test_a_small_run_measures_and_tells():
 @pytest.mark.thorough
 def test_a_refusal_is_told_and_the_others_go_on():
     with racers([BY_NAME["NumPy lambdify"], BY_NAME[STANDARD]], [0]) as who:
-        found = race(who, BY_KEY["point"], -1, 1)
-        assert all("ValueError" in one for one in found.values())
+        result = race(who, BY_KEY["point"], -1, 1)
+        assert all("ValueError" in one for one in result.values())
         assert all(isinstance(one, Found) for one in race(who, BY_KEY["point"], 3000, 1).values())
 
 
@@ -101,15 +101,15 @@ def test_the_list_names_works_and_contenders():
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         (["--only", "nothing"], "invalid choice: 'nothing'"),
         (["--points", "0"], "at least 1"),
         (["--write", "--quick"], "--write stores works in full"),
     ],
 )
-def test_a_bad_option_is_one_clear_line(options, told):
+def test_a_bad_option_is_one_clear_line(options, message):
     done = run(*options)
     assert done.returncode
-    assert told in done.stderr
+    assert message in done.stderr
     assert "Traceback" not in done.stderr

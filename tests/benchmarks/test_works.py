@@ -27,12 +27,12 @@ def test_blocks_see_every_point_once(key):
     inputs = BY_KEY[key].inputs(30_000)
     inputs = swept(inputs, theta_first=False) if key == "peak" else inputs
 
-    def added(rows, found):
-        found[0] = rows.sum(axis=0)
+    def added(rows, result):
+        result[0] = rows.sum(axis=0)
 
     (total,) = filled(inputs, added, [np.zeros(inputs.shape)])
-    wanted = sum(np.broadcast_to(column, inputs.shape) for column in inputs.broadcast().values())
-    np.testing.assert_allclose(total, wanted, rtol=1e-14)
+    expected = sum(np.broadcast_to(column, inputs.shape) for column in inputs.broadcast().values())
+    np.testing.assert_allclose(total, expected, rtol=1e-14)
     assert block_size(inputs) <= POINTS
 
 
@@ -40,9 +40,9 @@ def test_peaks_of_blocks_are_those_of_the_whole():
     inputs = swept(BY_KEY["peak"].inputs(100), theta_first=False)
     columns = inputs.broadcast()
 
-    def wave(rows, found):
+    def wave(rows, result):
         ec, AB, _, theta = rows
-        found[0] = AB * np.cos(theta) + ec
+        result[0] = AB * np.cos(theta) + ec
 
     values, angles = peaks(inputs, wave)
     dense = columns["AB"] * np.cos(columns["theta"]) + columns["ec"]

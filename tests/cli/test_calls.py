@@ -60,14 +60,14 @@ def test_the_numbers_are_those_of_the_call(line, capsys):
     given = {word.partition("=")[0] for word in words}
     machine = [word for word in WORDS.split() if word.partition("=")[0] not in given]
     assert main([*words, *machine, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
+    result = json.loads(capsys.readouterr().out)
     answer = SAME[line](MACHINE)
     if isinstance(answer, xr.Dataset):
         answer = {str(name): answer[name].values for name in answer.variables}
-        found = {name: found[name] for name in answer}
+        result = {name: result[name] for name in answer}
     expected = numbers(dict(answer))
     assert expected
-    assert numbers(found) == pytest.approx(expected, rel=1e-12, abs=1e-12, nan_ok=True)
+    assert numbers(result) == pytest.approx(expected, rel=1e-12, abs=1e-12, nan_ok=True)
 
 
 def test_designs_are_columns_of_a_table(capsys):
@@ -119,11 +119,11 @@ def test_a_scene_brings_machine_motor_and_units(tmp_path, capsys):
         f"[masses]\nm_slider = 20\nI_crank = 2\n[loads]\nF_Y = -900\n[steady]\n{motor}\n"
     )
     assert main(["steady", "--machine", str(scene), "flywheel_inertia=3", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
+    result = json.loads(capsys.readouterr().out)
     machine = dx.Machine.read(scene)
     answer = machine.steady(torque=dx.kloss(40.0, 0.15, "1500 rpm"), flywheel_inertia=3.0)
-    assert found["omega_mean"] == pytest.approx(answer["omega_mean"], rel=1e-12)
-    assert found["units"]["omega_mean"] == "rpm"
+    assert result["omega_mean"] == pytest.approx(answer["omega_mean"], rel=1e-12)
+    assert result["units"]["omega_mean"] == "rpm"
     assert main(["events", "--machine", str(scene), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["stroke"] == pytest.approx(machine.events()["stroke"])
 
@@ -145,14 +145,14 @@ def test_steady_takes_all_of_its_scene(written, words, inputs, tmp_path, capsys)
     more = f"[steady]\ntorque = {motor}\n{written}\n"
     scene.write_text(lengths.format(0.2) + more)
     assert main(["steady", "--machine", str(scene), *words.split(), "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
+    result = json.loads(capsys.readouterr().out)
     design = {"AB": 0.05, "BC": 0.2, "ec": 0.0, "m_slider": 20.0, "I_crank": 2.0}
     answer = dx.steady(torque=dx.kloss(40.0, 0.15, 157.0), **design, **inputs)
     for name in ("flywheel_inertia", "fluctuation", "omega_mean"):
-        np.testing.assert_allclose(found[name], answer[name], rtol=1e-12)
+        np.testing.assert_allclose(result[name], answer[name], rtol=1e-12)
     if not words:
         own = dx.scene(scene).run().steady.dataset
-        np.testing.assert_allclose(found["flywheel_inertia"], own["flywheel_inertia"], rtol=1e-12)
+        np.testing.assert_allclose(result["flywheel_inertia"], own["flywheel_inertia"], rtol=1e-12)
     scene.write_text(lengths.format("[0.2, 0.3]") + more)
     refused = "[" in written and not words
     assert main(["steady", "--machine", str(scene), *words.split(), "--json"]) == (2 if refused else 0)

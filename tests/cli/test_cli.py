@@ -43,33 +43,33 @@ def told(capsys):
     return run
 
 
-def test_a_point(told):
-    out = told("evaluate", "a_C", *POINT)
+def test_a_point(message):
+    out = message("evaluate", "a_C", *POINT)
     assert out == "a_C     -810.395 m/s^2\nstatus  0\n"
-    assert told("evaluate", "a_C", *(word.replace("=", " = ") for word in POINT)) == out
-    lines = told("evaluate", "V_C,a_C", *POINT, "a_C_wrt_ec").splitlines()
+    assert message("evaluate", "a_C", *(word.replace("=", " = ") for word in POINT)) == out
+    lines = message("evaluate", "V_C,a_C", *POINT, "a_C_wrt_ec").splitlines()
     assert [line.split()[0] for line in lines] == ["V_C", "a_C", "a_C_wrt_ec", "status"]
-    assert told("evaluate", "margin", "ec=210mm", "AB=.125", "BC=0.35") == "margin  0.015 m\nstatus  0\n"
-    assert told("evaluate", "stroke", "ec=0", "AB=.125", "BC=0.35").startswith("stroke  0.25 m\n")
+    assert message("evaluate", "margin", "ec=210mm", "AB=.125", "BC=0.35") == "margin  0.015 m\nstatus  0\n"
+    assert message("evaluate", "stroke", "ec=0", "AB=.125", "BC=0.35").startswith("stroke  0.25 m\n")
 
 
 STUCK = ["theta=90deg", "ec=.23", "AB=.125", "BC=.35", "omega0=1"]
 
 
-def test_a_point_has_its_status_also_in_json(told):
-    out = told("evaluate", "a_C", *STUCK)
+def test_a_point_has_its_status_also_in_json(message):
+    out = message("evaluate", "a_C", *STUCK)
     assert out == "a_C     nan\nstatus  1: cannot be assembled here\n"
-    found = json.loads(told("evaluate", "a_C", *STUCK, "--json"))
-    assert found == {"a_C": None, "status": 1, "units": {"a_C": "m/s^2"}}
-    found = json.loads(told("evaluate", "a_C", *POINT, "--json"))
-    assert found.keys() == {"a_C", "status", "units"}
+    result = json.loads(message("evaluate", "a_C", *STUCK, "--json"))
+    assert result == {"a_C": None, "status": 1, "units": {"a_C": "m/s^2"}}
+    result = json.loads(message("evaluate", "a_C", *POINT, "--json"))
+    assert result.keys() == {"a_C", "status", "units"}
     point = {"theta": "60 deg", "ec": 0.01, "AB": 0.125, "BC": 0.3, "omega0": "1500 rpm"}
-    assert (found["a_C"], found["status"]) == (dx.evaluate("a_C", **point), 0)
+    assert (result["a_C"], result["status"]) == (dx.evaluate("a_C", **point), 0)
 
 
-def test_options_of_a_call_stand_anywhere(told):
+def test_options_of_a_call_stand_anywhere(message):
     words = ["a_C", *POINT]
-    texts = {told("evaluate", *words[:k], "--json", *words[k:]) for k in range(len(words) + 1)}
+    texts = {message("evaluate", *words[:k], "--json", *words[k:]) for k in range(len(words) + 1)}
     assert len(texts) == 1
 
 
@@ -86,31 +86,31 @@ POINTS = {
 
 
 @pytest.mark.parametrize("line", POINTS)
-def test_a_point_is_that_of_the_function(line, told):
+def test_a_point_is_that_of_the_function(line, message):
     name, *words = line.replace("kgmm2", " kg mm2").replace(" kg mm2", "_kg_mm2").split()
     words = [word.replace("_kg_mm2", " kg mm2") for word in words]
-    assert json.loads(told("evaluate", name, *words, "--json"))[name] == dx.evaluate(name, **POINTS[line])
+    assert json.loads(message("evaluate", name, *words, "--json"))[name] == dx.evaluate(name, **POINTS[line])
 
 
-def test_forces_without_a_mass_or_a_load_are_told(told):
+def test_forces_without_a_mass_or_a_load_are_told(message):
     with pytest.warns(dx.LoadWarning, match="^T_in: 0, since neither a mass nor a load is given"):
-        told("evaluate", "T_in,V_C", "T_in_wrt_ec", *POINT)
-    told("evaluate", "T_in", *POINT, "m_slider=0")
-    told("evaluate", "V_C", *POINT)
+        message("evaluate", "T_in,V_C", "T_in_wrt_ec", *POINT)
+    message("evaluate", "T_in", *POINT, "m_slider=0")
+    message("evaluate", "V_C", *POINT)
 
 
 @pytest.mark.parametrize(
     ("speed", "status"),
     [("60rpm", "6: friction: two balances of forces"), ("-60rpm", "5: friction jams: no balance of forces")],
 )
-def test_a_point_tells_what_friction_does(speed, status, told):
+def test_a_point_tells_what_friction_does(speed, status, message):
     design = ["theta=90deg", "ec=20mm", "AB=40mm", "BC=64mm", f"omega0={speed}", "m_slider=1kg"]
-    assert told("evaluate", "T_in", *design, "mu=1.5").endswith(f"status  {status}\n")
-    assert told("evaluate", "T_in", *design).endswith("status  0\n")
+    assert message("evaluate", "T_in", *design, "mu=1.5").endswith(f"status  {status}\n")
+    assert message("evaluate", "T_in", *design).endswith("status  0\n")
 
 
-def test_list_of_names(told):
-    lines = told("evaluate", "--list").splitlines()
+def test_list_of_names(message):
+    lines = message("evaluate", "--list").splitlines()
     assert len(lines) == len(dx.quantities())
     assert any(line.startswith("a_C ") and "acceleration of the slider (A (19))" in line for line in lines)
 
@@ -176,14 +176,14 @@ def test_scene_that_is_fine(tmp_path, capsys):
     assert "did you mean" in capsys.readouterr().err
 
 
-def test_explain(told):
-    assert told("explain", COMPACTOR) == f"{dx.explain(COMPACTOR)}\n"
-    assert json.loads(told("explain", COMPACTOR, "--json"))["operations"]["per_point"] > 0
+def test_explain(message):
+    assert message("explain", COMPACTOR) == f"{dx.explain(COMPACTOR)}\n"
+    assert json.loads(message("explain", COMPACTOR, "--json"))["operations"]["per_point"] > 0
 
 
-def test_compile(tmp_path, told):
+def test_compile(tmp_path, message):
     place = tmp_path / "kernels.py"
-    out = told("compile", COMPACTOR, "-o", str(place))
+    out = message("compile", COMPACTOR, "-o", str(place))
     text = place.read_text(encoding="utf-8")
     assert out == f"{place}: {len(text.splitlines())} lines\n"
     compile(text, "kernels.py", "exec")
@@ -191,9 +191,9 @@ def test_compile(tmp_path, told):
     assert place.stat().st_mode == (tmp_path / "new").stat().st_mode
 
 
-def test_run(tmp_path, monkeypatch, told):
+def test_run(tmp_path, monkeypatch, message):
     monkeypatch.chdir(tmp_path)
-    out = told("run", COMPACTOR)
+    out = message("run", COMPACTOR)
     for text in ("29.5 rad/s", "-20.2 m/s", "-7740 rad/s2", "-994 m/s2"):
         assert out.count(text) == 2
     assert "Written\n  out/compactor.nc" in out.replace(os.sep, "/")
@@ -201,41 +201,41 @@ def test_run(tmp_path, monkeypatch, told):
 
 
 @pytest.mark.parametrize("command", [(), *((name,) for name in COMMANDS)])
-def test_help(command, told):
-    out = told(*command, "--help")
+def test_help(command, message):
+    out = message(*command, "--help")
     assert out.startswith("usage: ")
     assert max(map(len, out.splitlines())) <= 100
 
 
-def test_help_of_derive_calls_itself_by_its_name(told):
-    out = told("derive", "--help")
+def test_help_of_derive_calls_itself_by_its_name(message):
+    out = message("derive", "--help")
     assert out.startswith("usage: desaxe derive [-h] [--check] [--report]")
     assert "python -m" not in out
 
 
-def test_a_name_that_is_a_unit_too_may_follow_a_number(told):
-    assert told("evaluate", "theta=60deg", "s", *POINT[1:]).startswith("s ")
+def test_a_name_that_is_a_unit_too_may_follow_a_number(message):
+    assert message("evaluate", "theta=60deg", "s", *POINT[1:]).startswith("s ")
 
 
-def test_help_has_signs_and_examples(told):
-    out = told("evaluate", "--help")
+def test_help_has_signs_and_examples(message):
+    out = message("evaluate", "--help")
     assert "V_C and a_C are positive along +Y" in out
     assert "desaxe evaluate a_C,V_C theta=0deg:90deg:4 ec=10mm" in out
     assert "5 friction jams" in out
 
 
 @pytest.mark.parametrize("command", ["evaluate", "run"])
-def test_help_names_all_inputs(command, told):
-    assert set(re.findall(r"\w+", told(command, "--help"))) >= set(INPUTS)
+def test_help_names_all_inputs(command, message):
+    assert set(re.findall(r"\w+", message(command, "--help"))) >= set(INPUTS)
 
 
-def test_no_command_gives_help(told):
-    out = told()
+def test_no_command_gives_help(message):
+    out = message()
     assert all(f"    {command} " in out for command in COMMANDS)
 
 
-def test_version(told):
-    assert told("--version") == f"desaxe {dx.__version__}\n"
+def test_version(message):
+    assert message("--version") == f"desaxe {dx.__version__}\n"
 
 
 def test_derive_hands_its_options_on(monkeypatch):
@@ -337,18 +337,18 @@ sys.exit(main(["run", {COMPACTOR!r}]))
 
 
 @pytest.mark.parametrize(
-    ("words", "module", "told"),
+    ("words", "module", "message"),
     [
         (["derive", "--check"], "sympy", "desaxe derive needs sympy: python -m pip install 'desaxe[derive]'"),
     ],
 )
-def test_a_bare_install_says_what_to_install(words, module, told):
+def test_a_bare_install_says_what_to_install(words, module, message):
     code = (
         f"import sys; sys.modules[{module!r}] = None; from desaxe.cli import main; sys.exit(main({words!r}))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 2
-    assert done.stderr.splitlines()[-1] == f"desaxe: error: {told}"
+    assert done.stderr.splitlines()[-1] == f"desaxe: error: {message}"
 
 
 # ---- doctor --------------------------------------------------------------------------------------
@@ -373,9 +373,9 @@ def test_doctor_where_something_is_missing(monkeypatch):
         return real(name)
 
     monkeypatch.setattr(doctor, "version", version)
-    found = doctor.examine()
-    assert "missing: python -m pip install 'desaxe[units]'" in found.text
-    assert not found.usable
+    result = doctor.examine()
+    assert "missing: python -m pip install 'desaxe[units]'" in result.text
+    assert not result.usable
 
 
 def test_doctor_where_nothing_compiles(monkeypatch):
@@ -383,15 +383,15 @@ def test_doctor_where_nothing_compiles(monkeypatch):
         raise RuntimeError("no LLVM")
 
     monkeypatch.setattr(doctor, "evaluate", broken)
-    found = doctor.examine()
-    assert "arrays       FAILED: RuntimeError: no LLVM" in found.text
-    assert not found.usable
+    result = doctor.examine()
+    assert "arrays       FAILED: RuntimeError: no LLVM" in result.text
+    assert not result.usable
 
 
 def test_doctor_compares_with_the_truth(monkeypatch):
-    found = doctor.examine(accuracy=True)
-    assert found.usable
-    assert len(re.findall(r"200 frozen truths: 0\.\d+ of the promised error at most", found.text)) == 2
+    result = doctor.examine(accuracy=True)
+    assert result.usable
+    assert len(re.findall(r"200 frozen truths: 0\.\d+ of the promised error at most", result.text)) == 2
     wrong = [*doctor.truths()]
     wrong[7] = wrong[7]._replace(value=wrong[7].value * (1 + 2.0**-40))
     monkeypatch.setattr(doctor, "truths", lambda: wrong)

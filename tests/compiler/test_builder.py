@@ -106,8 +106,8 @@ def test_a_text_that_two_groups_have_stands_once(file):
 def test_no_statement_of_a_file_is_lost(path):
     tree = ast.parse(path.read_text(encoding="utf-8"))
     kept = [node for node in tree.body if not isinstance(node, (ast.ImportFrom, ast.If, ast.Expr))]
-    found = ast.parse("\n".join(each.text for each in source_of(path).statements)).body
-    assert list(map(ast.dump, found)) == list(map(ast.dump, kept))
+    result = ast.parse("\n".join(each.text for each in source_of(path).statements)).body
+    assert list(map(ast.dump, result)) == list(map(ast.dump, kept))
 
 
 @pytest.mark.parametrize("path", [FRONT, FUNCTIONS, STEPS, SPELLINGS], ids=lambda path: path.name)

@@ -33,8 +33,8 @@ def stable():
 
 
 def values(program, point=POINT):
-    found = run_in_doubles(program, {name: point[name] for name in program.inputs})
-    return [found[name] for name in program.outputs]
+    result = run_in_doubles(program, {name: point[name] for name in program.inputs})
+    return [result[name] for name in program.outputs]
 
 
 def test_loops_have_no_calls_and_mean_the_same(stable):

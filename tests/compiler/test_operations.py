@@ -81,12 +81,12 @@ def ordinary(op, count=50):
         )
 
 
-def agree(op, got, wanted, point=()):
-    if op in CALLED and math.isfinite(wanted) and wanted:
-        return abs(got - wanted) <= 2 * math.ulp(wanted)
+def agree(op, result, expected, point=()):
+    if op in CALLED and math.isfinite(expected) and expected:
+        return abs(result - expected) <= 2 * math.ulp(expected)
     if op == "mul_add" and all(map(math.isfinite, point)) and point:  # rounded once, or twice
-        return abs(got - wanted) <= math.ulp(point[0] * point[1]) / 2 + math.ulp(wanted)
-    return same_bits(got, wanted)
+        return abs(result - expected) <= math.ulp(point[0] * point[1]) / 2 + math.ulp(expected)
+    return same_bits(result, expected)
 
 
 @pytest.mark.parametrize("op", OPS)
@@ -139,7 +139,7 @@ def by_numba(op, points):
 def test_the_numba_spelling_is_ieee(op):
     points = list(arguments(op))
     answers = zip(points, by_numba(op, points), strict=True)
-    assert not [a for a, got in answers if not agree(op, got, float(ieee(op, *a)), a)]
+    assert not [a for a, result in answers if not agree(op, result, float(ieee(op, *a)), a)]
 
 
 @pytest.mark.parametrize("op", OPS)
@@ -150,7 +150,7 @@ def test_the_llvm_spelling_is_ieee(op):
     outs = [np.empty(len(points)) for _ in OPS]
     in_llvm().run(dict(zip("abc", columns, strict=True)), outs)
     answers = zip(points, outs[OPS.index(op)], strict=True)
-    assert not [a for a, got in answers if not agree(op, got, float(ieee(op, *a)), a)]
+    assert not [a for a, result in answers if not agree(op, result, float(ieee(op, *a)), a)]
 
 
 @cache
@@ -160,10 +160,10 @@ def in_llvm():
 
 def test_quarter_turns_go_round():
     sine, cosine = 0.25, 0.75
-    found = [ieee("rotated_sin", sine, cosine, float(quarters)) for quarters in range(-4, 8)]
-    assert found == [sine, cosine, -sine, -cosine] * 3
-    found = [ieee("rotated_cos", sine, cosine, float(quarters)) for quarters in range(-4, 8)]
-    assert found == [cosine, -sine, -cosine, sine] * 3
+    result = [ieee("rotated_sin", sine, cosine, float(quarters)) for quarters in range(-4, 8)]
+    assert result == [sine, cosine, -sine, -cosine] * 3
+    result = [ieee("rotated_cos", sine, cosine, float(quarters)) for quarters in range(-4, 8)]
+    assert result == [cosine, -sine, -cosine, sine] * 3
 
 
 @pytest.mark.parametrize("op", [op for op in OPS if op not in (*ERRORS, *WHOLE)])
@@ -171,13 +171,13 @@ def test_ieee_rounds_the_exact_meaning(op):
     with mpmath.workdps(50):
         for point in ordinary(op):
             exact = OPERATIONS[op].exact(mpmath.mp, *(a if a in BOOLS else mpmath.mpf(a) for a in point))
-            got = float(ieee(op, *point))
+            result = float(ieee(op, *point))
             if op == "hypot":
-                assert ulp_error(got, mpmath.mpf(exact)) < 2, point
+                assert ulp_error(result, mpmath.mpf(exact)) < 2, point
             elif op == "mul_add":
-                assert abs(got - exact) <= math.ulp(point[0] * point[1]) / 2 + math.ulp(got) / 2, point
+                assert abs(result - exact) <= math.ulp(point[0] * point[1]) / 2 + math.ulp(result) / 2, point
             else:
-                assert ulp_error(got, mpmath.mpf(exact)) < 1, point
+                assert ulp_error(result, mpmath.mpf(exact)) < 1, point
 
 
 def test_the_error_of_a_sum_is_what_rounding_took():

@@ -48,11 +48,11 @@ def truth(x, way):
     return number, a + s * b + s**2 * c + s**3 * d, b + 2 * s * c + 3 * s**2 * d
 
 
-def agrees(point, found):
+def agrees(point, result):
     piece, *numbers = truth(*point)
     scale = 1e-15 * 60 * (1 + abs(point[0])) ** 3
-    close = (abs(own - right) <= scale for own, right in zip(found[1:], numbers, strict=True))
-    return found[0] == piece and all(close)
+    close = (abs(own - right) <= scale for own, right in zip(result[1:], numbers, strict=True))
+    return result[0] == piece and all(close)
 
 
 def in_doubles(program, point):
@@ -91,8 +91,8 @@ def test_llvm():
 
 def test_numpy():
     x, way = np.array(POINTS).T
-    found = compile_arrays(PROGRAM, np)(x, way, np.array(KNOTS), np.array(ROWS))
-    assert np.array(found).T.tolist() == [in_doubles(PROGRAM, point) for point in POINTS]
+    result = compile_arrays(PROGRAM, np)(x, way, np.array(KNOTS), np.array(ROWS))
+    assert np.array(result).T.tolist() == [in_doubles(PROGRAM, point) for point in POINTS]
     with np.errstate(all="ignore"):
         pieces = compile_arrays(PROGRAM, np)(np.array(ODD), 1.0, np.array(KNOTS), np.array(ROWS))[0]
     assert set(pieces.tolist()) <= {0.0, 5.0}
@@ -121,8 +121,8 @@ def test_every_other_language_looks_up_as_the_interpreter(language, tmp_path):
     nothing = () if language == "jax" else ((math.nan, 1.0), (math.nan, -1.0))  # XLA finds a piece
     points = [*POINTS, *nothing]
     columns = [column.copy() for column in np.array(points).T]
-    found = caller(language, place, PROGRAM.inputs, PROGRAM.outputs)(columns)
-    rows = np.array([found[name] for name in PROGRAM.outputs]).T
+    result = caller(language, place, PROGRAM.inputs, PROGRAM.outputs)(columns)
+    rows = np.array([result[name] for name in PROGRAM.outputs]).T
     rtol, atol = (0, 0) if language == "c" else (1e-14, 1e-13)
     np.testing.assert_allclose(rows, [in_doubles(PROGRAM, p) for p in points], rtol=rtol, atol=atol)
 

@@ -20,14 +20,14 @@ def acceleration(theta, omega, torque):
 
 
 def test_the_motion_is_that_of_the_free_bodies():
-    found = solve_ivp(
+    result = solve_ivp(
         lambda t, y: [y[1], acceleration(*y, TORQUE)], (0.0, T_END), [0.3, SPEED], "DOP853",
         rtol=1e-12, atol=1e-12,
     )  # fmt: skip
     motion = crankshaft("V").simulate(
         **STARTS, t_end=T_END, times=[T_END], rtol=1e-12, names=["T_in", "a_C[1]"]
     )
-    theta, omega = found.y[:, -1]
+    theta, omega = result.y[:, -1]
     assert motion["theta"][0] == pytest.approx(theta, rel=1e-10)
     assert motion["omega"][0] == pytest.approx(omega, rel=1e-10)
     assert motion["alpha"][0] == pytest.approx(acceleration(theta, omega, TORQUE), rel=1e-8)

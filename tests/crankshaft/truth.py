@@ -52,9 +52,9 @@ def shaft(sliders, theta, omega, alpha, g=0, I_shaft=0):
     """All sums at a state; g = g_Y + i g_X."""
     theta, omega, alpha = mpf(theta), mpf(omega), mpf(alpha)
     names = ("T_in", "M_eff", "kinetic_energy", "potential_energy", "power_in", "M_shaking", "M_inertia")
-    found = dict.fromkeys((*names, "F", "I", "C"), mpf(0))
-    found["M_eff"] += mpf(I_shaft)
-    found["M_inertia"] -= mpf(I_shaft) * alpha
+    result = dict.fromkeys((*names, "F", "I", "C"), mpf(0))
+    result["M_eff"] += mpf(I_shaft)
+    result["M_inertia"] -= mpf(I_shaft) * alpha
     slope = mpf(0)
     for slider in sliders:
         h = mpf(10) ** (-mp.dps // 5)
@@ -68,29 +68,29 @@ def shaft(sliders, theta, omega, alpha, g=0, I_shaft=0):
             r, v, a = _rates([places[n] for places, _ in steps], h)
             _, w, b = _rates(turning[n], h)
             force = -mass * (v * alpha + a * omega**2)
-            found["M_eff"] += mass * abs(v) ** 2 + inertia * w**2
+            result["M_eff"] += mass * abs(v) ** 2 + inertia * w**2
             slope += 2 * (mass * (v.real * a.real + v.imag * a.imag) + inertia * w * b)
-            found["I"] += force
-            found["C"] += slider.position * force
-            found["M_inertia"] += _moment(r, force) - inertia * (w * alpha + b * omega**2)
-            found["potential_energy"] -= mass * _dot(g, r)
-            found["T_in"] -= mass * _dot(g, v)
-            found["F"] += mass * g
-            found["M_shaking"] += mass * _moment(r, g)
+            result["I"] += force
+            result["C"] += slider.position * force
+            result["M_inertia"] += _moment(r, force) - inertia * (w * alpha + b * omega**2)
+            result["potential_energy"] -= mass * _dot(g, r)
+            result["T_in"] -= mass * _dot(g, v)
+            result["F"] += mass * g
+            result["M_shaking"] += mass * _moment(r, g)
             if n == 2:
                 load = slider.force(theta)
-                found["T_in"] -= _dot(load, v)
-                found["F"] += load
-                found["M_shaking"] += _moment(r, load)
-    found["T_in"] += found["M_eff"] * alpha + slope * omega**2 / 2
-    found["kinetic_energy"] = found["M_eff"] * omega**2 / 2
-    found["power_in"] = found["T_in"] * omega
-    found["M_shaking"] += found["M_inertia"]
-    found |= {f"F_shaking_{n}": part for n, part in _axes(found["F"] + found["I"])}
-    found |= {f"F_inertia_{n}": part for n, part in _axes(found.pop("I"))}
-    found |= {f"C_inertia_{n}": part for n, part in _axes(found.pop("C"))}
-    del found["F"]
-    return found
+                result["T_in"] -= _dot(load, v)
+                result["F"] += load
+                result["M_shaking"] += _moment(r, load)
+    result["T_in"] += result["M_eff"] * alpha + slope * omega**2 / 2
+    result["kinetic_energy"] = result["M_eff"] * omega**2 / 2
+    result["power_in"] = result["T_in"] * omega
+    result["M_shaking"] += result["M_inertia"]
+    result |= {f"F_shaking_{n}": part for n, part in _axes(result["F"] + result["I"])}
+    result |= {f"F_inertia_{n}": part for n, part in _axes(result.pop("I"))}
+    result |= {f"C_inertia_{n}": part for n, part in _axes(result.pop("C"))}
+    del result["F"]
+    return result
 
 
 def _axes(force):

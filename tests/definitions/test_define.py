@@ -23,12 +23,12 @@ def test_values_and_all_first_sensitivities(name):
     with defined(name, expression.text, **expression.constants):
         known = set(dx.quantities())
         slopes = {p: f"{name}_wrt_{p}" for p in PARAMETERS if f"{name}_wrt_{p}" in known}
-        found = dx.evaluate([name, *slopes.values()], **POINT)
+        result = dx.evaluate([name, *slopes.values()], **POINT)
     assert set(slopes) >= set(PARAMETERS[:6])
-    assert math.isclose(found[name], expression.exact(POINT), rel_tol=1e-13)
+    assert math.isclose(result[name], expression.exact(POINT), rel_tol=1e-13)
     for parameter, slope in slopes.items():
         exact = float(expression.exact(POINT, parameter))
-        assert math.isclose(found[slope], exact, rel_tol=1e-12, abs_tol=1e-14), slope
+        assert math.isclose(result[slope], exact, rel_tol=1e-12, abs_tol=1e-14), slope
     # By a parameter that it has no sensitivity by, it does not change.
     for parameter in set(PARAMETERS) - set(slopes):
         assert expression.exact(POINT, parameter) == 0
@@ -39,8 +39,8 @@ def test_second_sensitivities(name):
     expression = EXPRESSIONS[name]
     pairs = [("theta", "ec"), ("ec", "BC"), ("AB", "omega0")]
     with defined(name, expression.text, **expression.constants):
-        found = dx.evaluate([f"{name}_wrt_{p}_{q}" for p, q in pairs], **POINT)
-    for (p, q), value in zip(pairs, found.values(), strict=True):
+        result = dx.evaluate([f"{name}_wrt_{p}_{q}" for p, q in pairs], **POINT)
+    for (p, q), value in zip(pairs, result.values(), strict=True):
         assert math.isclose(value, expression.exact(POINT, p, q), rel_tol=1e-9, abs_tol=1e-14), (p, q)
 
 
@@ -52,11 +52,11 @@ def test_second_ones_exist_where_the_names_have_them():
 def test_a_state():
     state = {p: value for p, value in POINT.items() if p != "omega0"} | {"omega": 150.0}
     with defined("rate", "V_C * omega"):
-        found = dx.evaluate(
+        result = dx.evaluate(
             ["V_C", "V_C_wrt_omega", "rate_wrt_omega", "rate_wrt_theta", "V_C_wrt_theta"], **state
         )
-        assert math.isclose(found["rate_wrt_omega"], found["V_C"] + 150.0 * found["V_C_wrt_omega"])
-        assert math.isclose(found["rate_wrt_theta"], 150.0 * found["V_C_wrt_theta"])
+        assert math.isclose(result["rate_wrt_omega"], result["V_C"] + 150.0 * result["V_C_wrt_omega"])
+        assert math.isclose(result["rate_wrt_theta"], 150.0 * result["V_C_wrt_theta"])
     with defined("start", "omega0 * AB"), pytest.raises(ValueError, match="no meaning for a given state"):
         dx.evaluate("start", **state)
 
@@ -79,14 +79,14 @@ def test_arrays_are_as_points():
     theta = np.linspace(0.0, 6.0, 3_000)
     with defined("both", "where(V_C > 0, hypot(V_C, V_B), exp(phi) * AB * omega0)"):
         inputs = {"ec": 0.3, "AB": 0.125, "BC": 0.35, "omega0": 3.0}  # it cannot turn fully
-        found = dx.evaluate(["both", "both_wrt_BC", "status"], theta=theta, **inputs)
+        result = dx.evaluate(["both", "both_wrt_BC", "status"], theta=theta, **inputs)
         for index in (0, 700, 1_500, 2_500, 2_999):
             point = dx.evaluate(["both", "both_wrt_BC"], theta=theta[index], **inputs)
             for name, value in point.items():
-                assert np.isclose(found[name][index], value, rtol=1e-14, equal_nan=True)
-        assert (np.isnan(found["both"]) == (found["status"] == 1)).all()
-        assert (np.isnan(found["both_wrt_BC"]) == (found["status"] == 1)).all()
-        assert (found["status"] == 1).any()
+                assert np.isclose(result[name][index], value, rtol=1e-14, equal_nan=True)
+        assert (np.isnan(result["both"]) == (result["status"] == 1)).all()
+        assert (np.isnan(result["both_wrt_BC"]) == (result["status"] == 1)).all()
+        assert (result["status"] == 1).any()
 
 
 @pytest.mark.parametrize(
@@ -94,10 +94,10 @@ def test_arrays_are_as_points():
 )
 def test_what_does_not_exist_is_nan(expression):
     with defined("own", expression):
-        found = dx.evaluate(
+        result = dx.evaluate(
             ["own", "own_wrt_ec", "own_wrt_alpha"], theta=1.57, ec=0.3, AB=0.125, BC=0.35, omega0=3.0
         )
-    assert all(map(math.isnan, found.values()))
+    assert all(map(math.isnan, result.values()))
 
 
 def test_magnitudes_at_0_have_no_derivative():
@@ -172,8 +172,8 @@ def test_a_definition_can_have_the_name_of_a_line():
             dx.define(name, f"{count + 1} * V_C")
             made.append(name)
         value = dx.evaluate("V_C", **POINT)
-        found = dx.evaluate(list(names), **POINT)
-        assert [found[name] for name in names] == [(k + 1) * value for k in range(len(names))]
+        result = dx.evaluate(list(names), **POINT)
+        assert [result[name] for name in names] == [(k + 1) * value for k in range(len(names))]
     finally:
         for name in made:
             dx.undefine(name)

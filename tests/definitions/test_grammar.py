@@ -104,10 +104,10 @@ def test_wrong_types(wrong):
 
 
 def test_constants_have_units_without_a_unit_library():
-    for text, wanted in (("1 mm", 1e-3), ("0.5 cm", 0.005), ("2 km", 2000.0)):
+    for text, expected in (("1 mm", 1e-3), ("0.5 cm", 0.005), ("2 km", 2000.0)):
         dx.define("own", "k + 0 * Y", k=text)
         try:
-            assert dx.evaluate("own", theta=1.0, ec=0.0, AB=0.1, BC=0.3) == wanted
+            assert dx.evaluate("own", theta=1.0, ec=0.0, AB=0.1, BC=0.3) == expected
         finally:
             dx.undefine("own")
 
@@ -130,13 +130,13 @@ def expression(chance, depth):
 def test_arithmetic_means_what_it_means_in_python(seed):
     text = f"0*phi + k*({expression(random.Random(seed), 3)})"
     with defined("own", text, k=0.7):
-        found = dx.evaluate(["own", "phi"], theta=1.1, ec=0.01, AB=0.125, BC=0.35)
-    scope = {"phi": found["phi"], "theta": 1.1, "k": 0.7, "abs": abs, "min": min, "hypot": math.hypot}
+        result = dx.evaluate(["own", "phi"], theta=1.1, ec=0.01, AB=0.125, BC=0.35)
+    scope = {"phi": result["phi"], "theta": 1.1, "k": 0.7, "abs": abs, "min": min, "hypot": math.hypot}
     scope |= {"sin": math.sin, "pi": math.pi, "where": lambda test, yes, no: yes if test else no}
-    assert found["own"] == pytest.approx(eval(text.replace("\n", ""), scope), rel=1e-13, abs=1e-13), text
+    assert result["own"] == pytest.approx(eval(text.replace("\n", ""), scope), rel=1e-13, abs=1e-13), text
 
 
 def test_a_constant_may_be_a_word_of_python_and_a_number_have_zeros_before_it():
     with defined("own", "lambda * Y + 007 * is*Y", **{"lambda": 0.5, "is": 1}):
-        found = dx.evaluate(["own", "Y"], theta=1.1, ec=0.01, AB=0.125, BC=0.35)
-    assert found["own"] == 7.5 * found["Y"]
+        result = dx.evaluate(["own", "Y"], theta=1.1, ec=0.01, AB=0.125, BC=0.35)
+    assert result["own"] == 7.5 * result["Y"]

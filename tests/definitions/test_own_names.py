@@ -70,11 +70,11 @@ def test_names_that_the_library_requests_itself_are_taken():
 
 def test_other_names_are_right_in_javascript(doubled, tmp_path):
     place = dx.compile(scene(*doubled(HOSTILE)), tmp_path / "press.js", to="javascript")
-    wanted = pytest.approx(2.0 * dx.evaluate("V_C", theta=0.7, **POINT), rel=1e-14)
+    expected = pytest.approx(2.0 * dx.evaluate("V_C", theta=0.7, **POINT), rel=1e-14)
     calls = [["evaluate", {"theta": 0.7, "ec": 0.01}], *([name, 0.7, 0.01] for name in HOSTILE)]
     every, *alone = es_module(place, calls)
     assert every["status"] == 0
-    assert [every[name] for name in HOSTILE] == alone == [wanted] * len(HOSTILE)
+    assert [every[name] for name in HOSTILE] == alone == [expected] * len(HOSTILE)
 
 
 @pytest.mark.parametrize(
@@ -95,11 +95,11 @@ def test_other_names_are_right_in_python(doubled, tmp_path):
     at, names = (0.7, 0.01), doubled(["kernel", "signature", "length", "x"])
     numba = imported(dx.compile(scene(*names), tmp_path / "press_numba.py"))
     jax = imported(dx.compile(scene(*names), tmp_path / "press_jax.py", to="jax"))
-    wanted = 2.0 * dx.evaluate("V_C", theta=at[0], **POINT)
+    expected = 2.0 * dx.evaluate("V_C", theta=at[0], **POINT)
     for place, name in enumerate(names):
-        assert numba.point(*at)[place] == getattr(numba, name)(*at) == pytest.approx(wanted, rel=1e-14)
+        assert numba.point(*at)[place] == getattr(numba, name)(*at) == pytest.approx(expected, rel=1e-14)
         with jax_in_doubles():
-            assert float(getattr(jax, name)(*at)) == pytest.approx(wanted, rel=1e-13)
+            assert float(getattr(jax, name)(*at)) == pytest.approx(expected, rel=1e-13)
 
 
 def test_a_function_of_a_design_may_be_called_skipped():
@@ -108,15 +108,15 @@ def test_a_function_of_a_design_may_be_called_skipped():
 
     inputs = {"theta": np.linspace(0.0, 6.0, 9), "ec": np.array([0.01, 0.02]), "AB": 0.04, "BC": 0.064}
     reduce = {"theta": ["max", points_skipped]}
-    found = dx.grid("V_C", omega0=3.0, reduce=reduce, **inputs)
-    assert found["V_C_skipped"].dtype == np.int64
-    np.testing.assert_allclose(found["points_skipped"], [0.025, 0.05])
+    result = dx.grid("V_C", omega0=3.0, reduce=reduce, **inputs)
+    assert result["V_C_skipped"].dtype == np.int64
+    np.testing.assert_allclose(result["points_skipped"], [0.025, 0.05])
 
 
 def test_harmonics_of_a_name_that_ends_in_at_rest():
     load = dx.over_theta([0.0, 2.0, 4.0], [-50.0, -200.0, -80.0], kind="linear")
     design = {**POINT, "m_slider": 2.0, "F_Y": load}
     with defined("torque_at_rest", "2*T_in"):
-        found = dx.harmonics("torque_at_rest", orders=3, **design)
-    wanted = dx.harmonics("T_in", orders=3, **design)
-    np.testing.assert_allclose(found["cos"], 2.0 * wanted["cos"], rtol=1e-12)
+        result = dx.harmonics("torque_at_rest", orders=3, **design)
+    expected = dx.harmonics("T_in", orders=3, **design)
+    np.testing.assert_allclose(result["cos"], 2.0 * expected["cos"], rtol=1e-12)

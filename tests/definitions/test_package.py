@@ -82,16 +82,16 @@ def test_it_answers_as_the_library_does(folder):
     assert not done.stderr
     values, alone, arrays, by_omega, few, *errors = json.loads(done.stdout)
     with using(read_definitions(TABLES)):
-        for name, wanted in dx.evaluate(NAMES, **POINT).items():
-            assert values[name] == pytest.approx(wanted, rel=1e-12), name
+        for name, expected in dx.evaluate(NAMES, **POINT).items():
+            assert values[name] == pytest.approx(expected, rel=1e-12), name
         assert alone == pytest.approx(values["arm"], rel=1e-14)
         others = {p: value for p, value in POINT.items() if p != "omega0"}
         assert by_omega == pytest.approx(dx.evaluate("shoe_wrt_omega", omega=150.0, **others), rel=1e-12)
         names = ["arm", "arm_wrt_theta", "status"]
         for index in range(10):
             at = {"theta": 6 * index * 70 / 699, "BC": 0.13}
-            for name, wanted in dx.evaluate(names, **POINT | at).items():
-                assert arrays[name][index] == pytest.approx(wanted, rel=1e-9, abs=1e-12, nan_ok=True)
+            for name, expected in dx.evaluate(names, **POINT | at).items():
+                assert arrays[name][index] == pytest.approx(expected, rel=1e-9, abs=1e-12, nan_ok=True)
         assert few[1] == pytest.approx(dx.evaluate("shoe", **POINT | {"theta": 2.0}), rel=1e-12)
     assert few[0] != few[0]
     assert ["ec is missing" in errors[0], "no input 'thet'" in errors[1], "BC = -1" in errors[2]] == [

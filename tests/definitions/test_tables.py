@@ -37,13 +37,13 @@ def forget():
 def test_a_scene_defines_its_quantities(tmp_path):
     scene = dx.scene(SCENE)
     data = scene.run().dataset
-    found = dx.evaluate(["N_C", "V_C", "of_both"], **POINT)
-    assert found["of_both"] == pytest.approx(0.16 * abs(found["N_C"] * found["V_C"]), rel=1e-14)
-    assert float(data.of_both.sel(ec=0.01, theta=1.0)) == pytest.approx(found["of_both"], rel=1e-14)
+    result = dx.evaluate(["N_C", "V_C", "of_both"], **POINT)
+    assert result["of_both"] == pytest.approx(0.16 * abs(result["N_C"] * result["V_C"]), rel=1e-14)
+    assert float(data.of_both.sel(ec=0.01, theta=1.0)) == pytest.approx(result["of_both"], rel=1e-14)
     assert json.loads(data.attrs["quantities"])["shoe"]["constants"] == {"f": 0.08}
     dx.define("shoe", "abs(N_C * V_C)")  # the scene keeps its own
     assert np.array_equal(scene.run().dataset.of_both, data.of_both)
-    assert dx.evaluate("shoe", **POINT) == pytest.approx(found["of_both"] / 0.16, rel=1e-14)
+    assert dx.evaluate("shoe", **POINT) == pytest.approx(result["of_both"] / 0.16, rel=1e-14)
 
 
 def test_a_pickled_scene_brings_its_quantities_with_it(tmp_path):

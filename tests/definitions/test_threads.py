@@ -51,14 +51,14 @@ def test_scenes_of_the_same_names_run_in_threads():
         kept = dx.scene(tables(factor))
         for turn in range(cases(15, 100, 400)):
             scene = dx.scene(tables(factor)) if turn % 2 else kept
-            found = scene.run()
-            np.testing.assert_allclose(found.dataset.twin, factor * found.dataset.V_C, rtol=1e-14)
+            result = scene.run()
+            np.testing.assert_allclose(result.dataset.twin, factor * result.dataset.V_C, rtol=1e-14)
             np.testing.assert_allclose(
-                found.dataset.twin_wrt_ec, factor * found.dataset.V_C_wrt_ec, rtol=1e-13
+                result.dataset.twin_wrt_ec, factor * result.dataset.V_C_wrt_ec, rtol=1e-13
             )
-            assert found.peaks[0].dataset["value"].values[0] == pytest.approx(factor * peak, rel=1e-12)
-            assert found.checks[0].computed == pytest.approx(factor * V, rel=1e-13)
-            assert f"{factor}*V_C" in found.dataset.attrs["quantities"]
+            assert result.peaks[0].dataset["value"].values[0] == pytest.approx(factor * peak, rel=1e-12)
+            assert result.checks[0].computed == pytest.approx(factor * V, rel=1e-13)
+            assert f"{factor}*V_C" in result.dataset.attrs["quantities"]
 
     in_threads(*(lambda k=k: run(k) for k in (2, 3, 5)))
 

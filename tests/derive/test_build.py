@@ -46,8 +46,8 @@ def test_the_programs_are_canonical():
 
 
 def test_every_name_is_computed():
-    found = run_in_doubles(derivation().program, POINT | LINKS | LOADED)
-    assert not [name for name in public_names() if not math.isfinite(found[name])]
+    result = run_in_doubles(derivation().program, POINT | LINKS | LOADED)
+    assert not [name for name in public_names() if not math.isfinite(result[name])]
 
 
 def test_every_public_name_says_what_it_is():

@@ -56,15 +56,15 @@ def test_turning_backwards(name):
 
 
 def test_text():
-    found = dx.equation("V_C_wrt_ec")
-    assert found.latex.startswith(r"\frac{\partial V_{C}}{\partial e_c} = ")
-    assert found.unit == "1/s"
-    assert found.steps[-1].startswith("V_C_wrt_ec = ")
-    assert found._repr_latex_().startswith("$")
-    assert r"\overline{BC}^{2}" in found.latex
-    assert not re.search(r"[A-Z]{2}\^", found.latex)  # AB^2 would be the square of B alone
+    result = dx.equation("V_C_wrt_ec")
+    assert result.latex.startswith(r"\frac{\partial V_{C}}{\partial e_c} = ")
+    assert result.unit == "1/s"
+    assert result.steps[-1].startswith("V_C_wrt_ec = ")
+    assert result._repr_latex_().startswith("$")
+    assert r"\overline{BC}^{2}" in result.latex
+    assert not re.search(r"[A-Z]{2}\^", result.latex)  # AB^2 would be the square of B alone
     assert dx.equation("a_C").source == "A (19)"
-    assert repr(found).startswith("V_C_wrt_ec [1/s], derivative of V_C by ec\nV_C_wrt_ec = ")
+    assert repr(result).startswith("V_C_wrt_ec [1/s], derivative of V_C by ec\nV_C_wrt_ec = ")
 
 
 def test_unknown():

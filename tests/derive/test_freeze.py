@@ -86,8 +86,8 @@ def test_a_toy_sheet():
 
 
 def test_a_toy_sheet_in_numbers():
-    found = run_in_doubles(toy(), {"x": 1.0, "y": 2.0, "z": 3.0})
-    assert (found["v"], found["w"]) == (49 - math.sin(7), 6 + (49 - math.sin(7)))
+    result = run_in_doubles(toy(), {"x": 1.0, "y": 2.0, "z": 3.0})
+    assert (result["v"], result["w"]) == (49 - math.sin(7), 6 + (49 - math.sin(7)))
 
 
 def test_equal_equations_freeze_alike():

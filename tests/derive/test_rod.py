@@ -67,8 +67,10 @@ def test_a_rod_function_is_its_difference(name):
         values = known()
         names = sorted(s.name for s in expression.free_symbols)
         formula = sp.lambdify([sp.Symbol(n, real=True) for n in names], expression, mpmath)
-        wanted = by_differences(read_rod_function(name))
-        assert abs(formula(*(values[n] for n in names)) - wanted) < mpmath.mpf(10) ** -15 * (1 + abs(wanted))
+        expected = by_differences(read_rod_function(name))
+        assert abs(formula(*(values[n] for n in names)) - expected) < mpmath.mpf(10) ** -15 * (
+            1 + abs(expected)
+        )
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -56,9 +56,9 @@ def test_steps_lead_to_the_expression():
 
 
 def test_text():
-    found = dx.equation("V_C", form="stable")
-    assert found.latex.startswith("\\begin{aligned}\ns_{\\theta} &= \\sin")
-    assert found.latex.endswith("V_{C} &= \\frac{\\partial Y}{\\partial \\theta} \\omega\n\\end{aligned}")
-    assert found.steps == dx.equation("V_C").steps
+    result = dx.equation("V_C", form="stable")
+    assert result.latex.startswith("\\begin{aligned}\ns_{\\theta} &= \\sin")
+    assert result.latex.endswith("V_{C} &= \\frac{\\partial Y}{\\partial \\theta} \\omega\n\\end{aligned}")
+    assert result.steps == dx.equation("V_C").steps
     with pytest.raises(ValueError, match="form = 'exact': it is one of textbook, stable"):
         dx.equation("V_C", form="exact")

@@ -28,13 +28,13 @@ NAMED = {"J": "N*m", "W": "N*m/s"}
 
 def powers(unit):
     """`m/s^2/rad` as {"m": 1, "s": -2, "rad": -1}; N is kg m/s^2."""
-    found = {"m": 0, "s": 0, "rad": 0, "kg": 0}
-    bases = {name: {name: 1} for name in found} | {"N": {"kg": 1, "m": 1, "s": -2}}
+    result = {"m": 0, "s": 0, "rad": 0, "kg": 0}
+    bases = {name: {name: 1} for name in result} | {"N": {"kg": 1, "m": 1, "s": -2}}
     terms = re.findall(r"([*/]|^)(m|s|rad|kg|N)(?:\^(\d+))?(?=[*/]|$)", NAMED.get(unit, unit))
     for sign, name, power in terms:
         for base, exponent in bases[name].items():
-            found[base] += (-1 if sign == "/" else 1) * int(power or 1) * exponent
-    return found
+            result[base] += (-1 if sign == "/" else 1) * int(power or 1) * exponent
+    return result
 
 
 @cache
@@ -67,9 +67,9 @@ def test_every_named_line_scales_as_its_unit_says(unit):
 
 def test_every_named_line_has_a_value_to_scale():
     """So that the test above compares more than zeros and NaN."""
-    found = [number(values()[name]) for name in program("program").notes]
-    assert not any(math.isnan(value) for value in found)
-    assert sum(value != 0 for value in found) > 0.7 * len(found)
+    result = [number(values()[name]) for name in program("program").notes]
+    assert not any(math.isnan(value) for value in result)
+    assert sum(value != 0 for value in result) > 0.7 * len(result)
 
 
 def test_every_unit_can_be_read():

@@ -20,16 +20,16 @@ MEASURES = [
 @pytest.mark.parametrize("measure", MEASURES, ids=str)
 def test_values_and_derivatives(measure):
     ec = np.array([0.0, 0.03, 0.1])
-    found = measured([checked(measure)], {**MACHINE, "ec": ec})[checked(measure)]
+    result = measured([checked(measure)], {**MACHINE, "ec": ec})[checked(measure)]
     theta = np.linspace(0, 2 * np.pi, 4096, endpoint=False) if measure[0] != "at" else np.array([np.pi / 3])
     values = dx.evaluate(measure[-1], theta=theta, ec=ec[:, None], **MACHINE)
-    wanted = np.sqrt((values**2).mean(1)) if measure[0] == "rms" else values.mean(1)
+    expected = np.sqrt((values**2).mean(1)) if measure[0] == "rms" else values.mean(1)
     scale = np.abs(values).max()
-    assert np.allclose(found.value, wanted, rtol=1e-11, atol=1e-11 * scale)
+    assert np.allclose(result.value, expected, rtol=1e-11, atol=1e-11 * scale)
     step = 1e-6
     sides = [measured([checked(measure)], {**MACHINE, "ec": ec + s})[checked(measure)] for s in (-step, step)]
     slope = (sides[1].value - sides[0].value) / (2 * step)
-    assert np.allclose(found.gradient["ec"], slope, rtol=1e-6, atol=1e-6 * scale)
+    assert np.allclose(result.gradient["ec"], slope, rtol=1e-6, atol=1e-6 * scale)
 
 
 def test_optimize_takes_them_and_functions():
@@ -205,15 +205,15 @@ def test_every_integral_over_a_turn_is_that_of_free_bodies(load, margin, frictio
         right = {n: float(v) for n, v in right.items()}
         slopes = {p: {n: float(v) for n, v in own.items()} for p, own in slopes.items()}
     measures = [(kind, name) for name in ("T_in", "N_C") for kind in ("mean", "rms")]
-    found = measured(measures, inputs)
+    result = measured(measures, inputs)
     room = 1e-11 if margin > 1e-5 else 1e-10
     for kind, name in measures:
         size = right[f"rms {name}"]
-        assert found[kind, name].value == pytest.approx(right[f"{kind} {name}"], abs=room * size)
+        assert result[kind, name].value == pytest.approx(right[f"{kind} {name}"], abs=room * size)
         for p in by:
             slope = slopes[p][f"{kind} {name}"]
             scale = max(abs(slopes[p][f"rms {name}"]), abs(slope), size / design[p])
-            assert found[kind, name].gradient[p] == pytest.approx(slope, abs=100 * room * scale), (
+            assert result[kind, name].gradient[p] == pytest.approx(slope, abs=100 * room * scale), (
                 kind,
                 name,
                 p,
@@ -253,15 +253,15 @@ def test_jumps_of_conditions_move_with_every_input():
 
     name = dx.define("rig", "where(T_in > t0, T_in, -T_in)", t0="3 N m")
     try:
-        found = measured([("mean", name)], {**design, "F_Y": LOADS["number"]})["mean", name]
+        result = measured([("mean", name)], {**design, "F_Y": LOADS["number"]})["mean", name]
         series = dx.harmonics(name, orders=1, **design, F_Y=LOADS["number"])
     finally:
         dx.undefine(name)
     with mp.workdps(DIGITS):
-        assert found.value == pytest.approx(float(mean()), rel=1e-12)
+        assert result.value == pytest.approx(float(mean()), rel=1e-12)
         assert series["mean"] == pytest.approx(float(mean()), rel=1e-12)
         for p in ("ec", "BC", "omega0", "m_slider"):
             step = mpf(10) ** -12
             sides = [mean(**{p: mpf(design[p]) + s * step}) for s in (1, -1)]
             slope = float((sides[0] - sides[1]) / (2 * step))
-            assert found.gradient[p] == pytest.approx(slope, rel=1e-9), p
+            assert result.gradient[p] == pytest.approx(slope, rel=1e-9), p

@@ -22,10 +22,10 @@ def torque_of_the_bodies(theta, **inputs):
 
 def test_means_of_the_free_bodies():
     """Equal steps: without friction the torque is periodic and analytic, and 48 are enough."""
-    found = dx.drive(**PRESS)
+    result = dx.drive(**PRESS)
     torque = [torque_of_the_bodies(2 * math.pi * k / 48, **PRESS) for k in range(48)]
-    assert found["torque_mean"] == pytest.approx(math.fsum(torque) / 48, abs=1e-13)
-    assert found["torque_rms"] == pytest.approx(math.sqrt(math.fsum(t * t for t in torque) / 48), rel=1e-14)
+    assert result["torque_mean"] == pytest.approx(math.fsum(torque) / 48, abs=1e-13)
+    assert result["torque_rms"] == pytest.approx(math.sqrt(math.fsum(t * t for t in torque) / 48), rel=1e-14)
 
 
 def test_means_with_friction_and_work_of_the_free_bodies():
@@ -40,11 +40,11 @@ def test_means_with_friction_and_work_of_the_free_bodies():
         torque = np.array([torque_of_the_bodies(x, **design) for x in theta.tolist()])
         total += 0.5 * (high - low) * weight @ torque
         square += 0.5 * (high - low) * weight @ torque**2
-    found = dx.drive(**design)
-    assert found["torque_mean"] == pytest.approx(total / (2 * math.pi), rel=1e-12)
-    assert found["torque_rms"] == pytest.approx(math.sqrt(square / (2 * math.pi)), rel=1e-12)
-    assert found["work_in"] - found["work_out"] == pytest.approx(total, rel=1e-12)
-    assert found["power_mean"] == pytest.approx(total * 40.0 / (2 * math.pi), rel=1e-12)
+    result = dx.drive(**design)
+    assert result["torque_mean"] == pytest.approx(total / (2 * math.pi), rel=1e-12)
+    assert result["torque_rms"] == pytest.approx(math.sqrt(square / (2 * math.pi)), rel=1e-12)
+    assert result["work_in"] - result["work_out"] == pytest.approx(total, rel=1e-12)
+    assert result["power_mean"] == pytest.approx(total * 40.0 / (2 * math.pi), rel=1e-12)
 
 
 @pytest.mark.parametrize(("omega0", "alpha"), [(-40.0, 0.0), (30.0, 50.0)])
@@ -52,36 +52,36 @@ def test_sums_over_time(omega0, alpha):
     """The midpoint rule in time, at instants of the law of motion; peaks by `peak`."""
     law = {"omega0": omega0, "alpha": alpha}
     design = {**RUBBING, **law}
-    found = dx.drive(**design)
+    result = dx.drive(**design)
     way = math.copysign(1.0, omega0)
     a, b, c = alpha / 2, omega0, -way * 2 * math.pi
     period = 2 * c / (-b - way * math.sqrt(b * b - 4 * a * c))
-    assert found["period"] == pytest.approx(period, rel=1e-14)
+    assert result["period"] == pytest.approx(period, rel=1e-14)
     steps = 100_000
     t = (np.arange(steps) + 0.5) * period / steps
     power, torque = (dx.evaluate(name, theta=b * t + a * t * t, **design) for name in ("power_in", "T_in"))
-    assert found["torque_mean"] == pytest.approx(torque.mean(), abs=1e-7)
-    assert found["torque_rms"] == pytest.approx(np.sqrt((torque**2).mean()), rel=1e-8)
-    assert found["power_mean"] == pytest.approx(power.mean(), abs=1e-6)
-    assert found["work_in"] == pytest.approx(np.maximum(power, 0).mean() * period, rel=1e-8)
-    assert found["work_out"] == pytest.approx(np.maximum(-power, 0).mean() * period, rel=1e-8)
+    assert result["torque_mean"] == pytest.approx(torque.mean(), abs=1e-7)
+    assert result["torque_rms"] == pytest.approx(np.sqrt((torque**2).mean()), rel=1e-8)
+    assert result["power_mean"] == pytest.approx(power.mean(), abs=1e-6)
+    assert result["work_in"] == pytest.approx(np.maximum(power, 0).mean() * period, rel=1e-8)
+    assert result["work_out"] == pytest.approx(np.maximum(-power, 0).mean() * period, rel=1e-8)
     turn = tuple(sorted((0.0, way * 2 * math.pi)))
     for figure, name in (("torque_peak", "T_in"), ("power_peak", "power_in")):
         top = dx.peak(name, theta=turn, **design)
-        assert found[figure] == pytest.approx(top["value"], rel=1e-13)
-        for parameter, slope in found["gradient"][figure].items():
+        assert result[figure] == pytest.approx(top["value"], rel=1e-13)
+        for parameter, slope in result["gradient"][figure].items():
             assert slope == pytest.approx(top["gradient"][parameter], rel=1e-9, abs=1e-12)
         if name == "T_in":
             around = 0.0 if alpha else 2 * math.pi * (top["theta"] < 0.0)
-            assert found["theta_peak"] == pytest.approx(top["theta"] + around, abs=1e-10)
+            assert result["theta_peak"] == pytest.approx(top["theta"] + around, abs=1e-10)
 
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("design", [PRESS, RUBBING], ids=["smooth", "friction"])
 def test_gradients_by_differences(design):
-    found = dx.drive(fluctuation=0.05, **design)
-    sizes = dict.fromkeys(("torque_mean", "flywheel_torque"), found["torque_rms"])
-    sizes["power_mean"] = found["power_peak"]
+    result = dx.drive(fluctuation=0.05, **design)
+    sizes = dict.fromkeys(("torque_mean", "flywheel_torque"), result["torque_rms"])
+    sizes["power_mean"] = result["power_peak"]
     for name in ("ec", "BC", "omega0", "m_rod", "I_rod", "F_Y", "fluctuation", "mu")[
         : 8 if "mu" in design else 7
     ]:
@@ -90,7 +90,7 @@ def test_gradients_by_differences(design):
         near, far = (
             [dx.drive(**{**base, name: base[name] + side * k * step}) for side in (1, -1)] for k in (1, 2)
         )
-        for figure, gradient in found["gradient"].items():
+        for figure, gradient in result["gradient"].items():
             if name not in gradient:
                 assert name == "fluctuation"
                 continue
@@ -100,7 +100,7 @@ def test_gradients_by_differences(design):
             assert gradient[name] == pytest.approx(
                 (4 * narrow - wide) / 3,
                 rel=1e-7,
-                abs=1e-8 * sizes.get(figure, found[figure]) / abs(base[name]),
+                abs=1e-8 * sizes.get(figure, result[figure]) / abs(base[name]),
             ), (figure, name)
 
 
@@ -133,12 +133,12 @@ def test_gradients_where_a_jump_of_a_load_moves(load, omega0, mu):
     """The jump moves with the lengths; the work of a constant force over the last 8 mm does not."""
     design = {"AB": 0.06, "BC": 0.3, "ec": 0.015, "m_slider": 120.0, "omega0": omega0, "mu": mu}
     call = {**design, "F_Y": JUMPING[load], "fluctuation": 0.1}
-    found = dx.drive(**call)
+    result = dx.drive(**call)
     if not mu:
-        assert found["flywheel_torque"] == pytest.approx(found["torque_mean"], rel=1e-12)
+        assert result["flywheel_torque"] == pytest.approx(result["torque_mean"], rel=1e-12)
         if load == "over_stroke":
-            assert found["work_in"] - found["work_out"] == pytest.approx(8e4 * 0.008, rel=1e-12)
-            assert abs(found["gradient"]["power_mean"]["AB"]) < 1e-8
+            assert result["work_in"] - result["work_out"] == pytest.approx(8e4 * 0.008, rel=1e-12)
+            assert abs(result["gradient"]["power_mean"]["AB"]) < 1e-8
     way, step = {"AB": 1.0, "ec": -0.7, "BC": 1.6}, 2e-6  # one direction, in which every length counts
     ends = [
         dx.drive(**{**call, **{name: design[name] + k * step * by for name, by in way.items()}})
@@ -148,8 +148,8 @@ def test_gradients_where_a_jump_of_a_load_moves(load, omega0, mu):
                    "flywheel_torque"):  # fmt: skip
         far, near, after, last = (end[figure] for end in ends)
         slope = (8.0 * (after - near) - (last - far)) / (12.0 * step)
-        small = 1e-6 * abs(found[figure]) / design["ec"]
-        along = sum(by * found["gradient"][figure][name] for name, by in way.items())
+        small = 1e-6 * abs(result[figure]) / design["ec"]
+        along = sum(by * result["gradient"][figure][name] for name, by in way.items())
         assert along == pytest.approx(slope, rel=1e-6, abs=small), figure
 
 
@@ -158,13 +158,13 @@ def test_gradients_where_a_jump_of_a_load_moves(load, omega0, mu):
 def test_a_simulated_turn_with_the_flywheel(mu, fluctuation):
     """Under the constant torque the motion repeats itself, and its speed fluctuates as wanted."""
     design = {**PRESS, "mu": mu}
-    found = dx.drive(fluctuation=fluctuation, **design)
-    start = float(found.course["speed"][0])
-    theta0 = float(found.course["theta_of_speed"][0])
-    bodies = {n: v for n, v in design.items() if n != "omega0"} | {"I_crank": found["flywheel_inertia"]}
+    result = dx.drive(fluctuation=fluctuation, **design)
+    start = float(result.course["speed"][0])
+    theta0 = float(result.course["theta_of_speed"][0])
+    bodies = {n: v for n, v in design.items() if n != "omega0"} | {"I_crank": result["flywheel_inertia"]}
     motion = dx.simulate(
-        torque=found["flywheel_torque"], t_end=1.0, theta0=theta0, omega_start=start,
-        until=theta0 + 2 * math.pi, rtol=1e-12, times=np.linspace(0, 2 * found["period"], 4001), **bodies,
+        torque=result["flywheel_torque"], t_end=1.0, theta0=theta0, omega_start=start,
+        until=theta0 + 2 * math.pi, rtol=1e-12, times=np.linspace(0, 2 * result["period"], 4001), **bodies,
     )  # fmt: skip
     end = next(event for event in motion["events"] if event.kind == "angle")
     assert end.omega == pytest.approx(start, rel=1e-8)
@@ -174,8 +174,8 @@ def test_a_simulated_turn_with_the_flywheel(mu, fluctuation):
 
 
 def test_a_fluctuation_in_percent_and_a_crank_that_needs_no_flywheel():
-    found = dx.drive(fluctuation=0.02, **PRESS)
-    assert dx.drive(fluctuation="2 %", **PRESS) == found
+    result = dx.drive(fluctuation=0.02, **PRESS)
+    assert dx.drive(fluctuation="2 %", **PRESS) == result
     heavy = dx.drive(fluctuation=0.02, **PRESS, I_crank=100.0)
     assert heavy["flywheel_inertia"] == 0.0
     assert set(heavy["gradient"]["flywheel_inertia"].values()) == {0.0}
@@ -188,9 +188,9 @@ def test_starting_from_the_worst_standstill():
     ahead, back = (
         way * dx.evaluate("T_in", theta=theta, **{**RUBBING, "omega0": 1e-9 * way}) for way in (1, -1)
     )
-    found = dx.drive(**RUBBING)
-    assert found["starting_torque"] == pytest.approx(ahead.max(), rel=1e-8)
-    assert found["theta_start"] == pytest.approx(theta[ahead.argmax()], abs=4e-5)
+    result = dx.drive(**RUBBING)
+    assert result["starting_torque"] == pytest.approx(ahead.max(), rel=1e-8)
+    assert result["theta_start"] == pytest.approx(theta[ahead.argmax()], abs=4e-5)
     assert dx.drive(**{**RUBBING, "omega0": -40.0})["starting_torque"] == pytest.approx(back.max(), rel=1e-8)
     both = dx.drive(reverse=True, **RUBBING)["starting_torque"]
     assert both == pytest.approx(max(ahead.max(), back.max()), rel=1e-8)
@@ -204,11 +204,11 @@ def test_a_load_over_the_angle():
         return np.where(np.cos(theta) > 0.5, -4000.0, -10.0)
 
     design = {"ec": 0.0, "AB": 0.1, "BC": 0.4, "omega0": 20.0}
-    found = dx.drive(F_Y=force, **design)
+    result = dx.drive(F_Y=force, **design)
     Y = dx.evaluate("Y", theta=np.array([0.0, math.pi / 3, math.pi]), ec=0.0, AB=0.1, BC=0.4)
     stroke = 4000.0 * (Y[0] - Y[1]) + 10.0 * (Y[1] - Y[2])
-    assert found["work_in"] == pytest.approx(stroke, rel=1e-10)
-    assert found["work_out"] == pytest.approx(stroke, rel=1e-10)
+    assert result["work_in"] == pytest.approx(stroke, rel=1e-10)
+    assert result["work_out"] == pytest.approx(stroke, rel=1e-10)
 
 
 def test_status():
@@ -230,17 +230,17 @@ def test_status():
 
 
 def test_report_and_plot():
-    found = dx.drive(**RUBBING)
-    report = found.report()
-    for words in ("381.972 rpm", f"{found['torque_rms']:.6g} N m", "starting torque", "3 %"):
+    result = dx.drive(**RUBBING)
+    report = result.report()
+    for words in ("381.972 rpm", f"{result['torque_rms']:.6g} N m", "starting torque", "3 %"):
         assert words in report
-    assert str(found) == report
-    lines = found.plot()
+    assert str(result) == report
+    lines = result.plot()
     assert set(lines) == {"T_in", "mean", "peak", "speed"}
-    assert lines["T_in"].get_ydata().max() <= found["torque_peak"]
+    assert lines["T_in"].get_ydata().max() <= result["torque_peak"]
     figure = lines["T_in"].figure
     assert figure.axes[-1].get_xlim() == (0.0, 360.0)
-    alone = dx.plot.drive(found, ax=figure.axes[0])
+    alone = dx.plot.drive(result, ax=figure.axes[0])
     assert "speed" not in alone
     with pytest.raises(ValueError, match="status 1"):
         dx.drive(ec=0.1, AB=0.2, BC=0.25, omega0=3.0).plot()

@@ -19,6 +19,6 @@ MODULES = [
 
 @pytest.mark.parametrize("module", MODULES)
 def test_examples(module):
-    found = doctest.testmod(import_module(f"desaxe.design.{module}"))
-    assert found.attempted >= 2
-    assert not found.failed
+    result = doctest.testmod(import_module(f"desaxe.design.{module}"))
+    assert result.attempted >= 2
+    assert not result.failed

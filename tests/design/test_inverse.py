@@ -19,10 +19,10 @@ def test_there_and_back(branch, AB):
     theta = np.linspace(-3.1, 3.1, 400)
     Y, status = dx.evaluate(["Y", "status"], theta=theta, branch=branch, **lengths).values()
     theta, Y = theta[status == 0], Y[status == 0]
-    found = dx.inverse(Y=Y, branch=branch, **lengths)
-    nearest = np.nanmin(np.abs(found["theta"] - theta[:, None]), axis=1)
+    result = dx.inverse(Y=Y, branch=branch, **lengths)
+    nearest = np.nanmin(np.abs(result["theta"] - theta[:, None]), axis=1)
     assert nearest.max() < 1e-7
-    back = dx.evaluate("Y", theta=found["theta"], branch=branch, **lengths)
+    back = dx.evaluate("Y", theta=result["theta"], branch=branch, **lengths)
     np.testing.assert_allclose(
         back[np.isfinite(back)], np.broadcast_to(Y[:, None], back.shape)[np.isfinite(back)], atol=1e-14
     )
@@ -31,10 +31,10 @@ def test_there_and_back(branch, AB):
 def test_rates_are_those_of_the_crank():
     theta = np.array([0.4, 2.0, -1.2])
     motion = dx.evaluate(["Y", "V_C", "a_C"], theta=theta, omega=7.0, alpha=-3.0, **LENGTHS)
-    found = dx.inverse(**motion, **LENGTHS)
-    own = np.abs(found["theta"] - theta[:, None]) < 1e-9
-    np.testing.assert_allclose(found["omega"][own], 7.0, rtol=1e-12)
-    np.testing.assert_allclose(found["alpha"][own], -3.0, rtol=1e-10)
+    result = dx.inverse(**motion, **LENGTHS)
+    own = np.abs(result["theta"] - theta[:, None]) < 1e-9
+    np.testing.assert_allclose(result["omega"][own], 7.0, rtol=1e-12)
+    np.testing.assert_allclose(result["alpha"][own], -3.0, rtol=1e-10)
 
 
 def test_branches_share_no_solution():
@@ -46,17 +46,17 @@ def test_branches_share_no_solution():
 
 
 def test_status():
-    found = dx.inverse(Y=[0.3, 0.9, math.nan, 0.475], ec=0.0, AB=0.125, BC=0.35, V_C=1.0)
-    assert found["status"].tolist() == [0, 1, 4, 2]
-    assert np.isnan(found["theta"][1]).all()
-    assert found["theta"][3, 0] == 0.0
-    assert np.isnan(found["omega"][3]).all()
+    result = dx.inverse(Y=[0.3, 0.9, math.nan, 0.475], ec=0.0, AB=0.125, BC=0.35, V_C=1.0)
+    assert result["status"].tolist() == [0, 1, 4, 2]
+    assert np.isnan(result["theta"][1]).all()
+    assert result["theta"][3, 0] == 0.0
+    assert np.isnan(result["omega"][3]).all()
 
 
 def test_shapes():
-    found = dx.inverse(Y=np.full((3, 1), 0.3), ec=[0.0, 0.1], AB=0.125, BC=0.35)
-    assert found["theta"].shape == (3, 2, 2)
-    assert found["status"].shape == (3, 2)
+    result = dx.inverse(Y=np.full((3, 1), 0.3), ec=[0.0, 0.1], AB=0.125, BC=0.35)
+    assert result["theta"].shape == (3, 2, 2)
+    assert result["status"].shape == (3, 2)
     assert isinstance(dx.inverse(Y=0.3, **LENGTHS)["status"], int)
     assert (
         dx.inverse(Y="300 mm", **LENGTHS)["theta"].tolist() == dx.inverse(Y=0.3, **LENGTHS)["theta"].tolist()
@@ -66,12 +66,12 @@ def test_shapes():
 def test_units_of_arrays():
     """A labelled array says its unit, and so may each text of a list."""
     lengths = {"ec": 0.01, "AB": 0.05, "BC": 0.2}
-    wanted = dx.inverse(Y=[0.19, 0.21], V_C=[1.0, -2.0], **lengths)
+    expected = dx.inverse(Y=[0.19, 0.21], V_C=[1.0, -2.0], **lengths)
     labelled = xr.DataArray([190.0, 210.0], dims="k", attrs={"units": "mm"})
     for given in (labelled, ["190 mm", "0.21 m"]):
-        found = dx.inverse(Y=given, V_C=["1 m/s", "-200 cm/s"], **lengths)
-        for name, values in wanted.items():
-            np.testing.assert_allclose(found[name], values, rtol=1e-12)
+        result = dx.inverse(Y=given, V_C=["1 m/s", "-200 cm/s"], **lengths)
+        for name, values in expected.items():
+            np.testing.assert_allclose(result[name], values, rtol=1e-12)
 
 
 @pytest.mark.parametrize("branch", [1, -1])
@@ -82,10 +82,10 @@ def test_a_distance_from_the_outer_dead_centre(branch):
     BC = AB * draw.uniform(1.2, 4.0, 40)
     ec = draw.uniform(-0.9, 0.9, 40) * (BC - AB)
     s = dx.events(ec=ec, AB=AB, BC=BC, branch=branch)["stroke"] * 10.0 ** draw.uniform(-14.0, -0.01, 40)
-    found = dx.inverse(s=s, ec=ec, AB=AB, BC=BC, branch=branch)
-    assert not found["status"].any()
+    result = dx.inverse(s=s, ec=ec, AB=AB, BC=BC, branch=branch)
+    assert not result["status"].any()
     with mp.workdps(40):
-        for k, two in enumerate(found["theta"].tolist()):
+        for k, two in enumerate(result["theta"].tolist()):
             crank, rod, offset = mpf(float(AB[k])), mpf(float(BC[k])), mpf(float(ec[k]))
 
             def distance(theta, crank=crank, rod=rod, offset=offset):
@@ -101,10 +101,10 @@ def test_a_distance_from_the_outer_dead_centre(branch):
 def test_distances_at_the_ends_of_the_stroke():
     lengths = {"ec": 0.01, "AB": 0.1, "BC": 0.3}
     ends = dx.events(**lengths)
-    found = dx.inverse(s=[0.0, 0.1, 0.3], V_C=1.0, **lengths)
-    assert found["status"].tolist() == [2, 0, 1]
-    assert found["theta"][0, 0] == ends["theta_outer"]
-    assert np.isnan(found["omega"][0]).all()
+    result = dx.inverse(s=[0.0, 0.1, 0.3], V_C=1.0, **lengths)
+    assert result["status"].tolist() == [2, 0, 1]
+    assert result["theta"][0, 0] == ends["theta_outer"]
+    assert np.isnan(result["omega"][0]).all()
     machine = dx.Machine(units="mm, deg", ec=10, AB=100, BC=300)
     there = machine.evaluate("s", theta=machine.inverse(s=5)["theta"])
     assert there == pytest.approx([5.0, 5.0], rel=1e-13)

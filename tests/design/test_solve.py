@@ -27,7 +27,7 @@ CASES = [
 
 @pytest.mark.parametrize(("name", "ends", "quantity", "exact", "value", "others"), CASES)
 def test_all_solutions_and_their_derivatives(name, ends, quantity, exact, value, others):
-    found = dx.solve(over={name: ends}, **{quantity: value}, **others)
+    result = dx.solve(over={name: ends}, **{quantity: value}, **others)
     with mp.workdps(40):
 
         def excess(x, target=value, **changed):
@@ -40,8 +40,8 @@ def test_all_solutions_and_their_derivatives(name, ends, quantity, exact, value,
             for a, b, one, two in zip(grid, grid[1:], signs, signs[1:], strict=False)
             if one != two
         ]
-        assert found[name].tolist() == pytest.approx([float(root) for root in roots], rel=1e-13)
-        assert found["status"] == 0
+        assert result[name].tolist() == pytest.approx([float(root) for root in roots], rel=1e-13)
+        assert result["status"] == 0
         h = mpf(10) ** -12
 
         def moved(root, target=value, **changed):
@@ -52,9 +52,9 @@ def test_all_solutions_and_their_derivatives(name, ends, quantity, exact, value,
         for k, root in enumerate(roots):
             for p, other in others.items():
                 slope = (moved(root, **{p: mpf(other) + h}) - moved(root, **{p: mpf(other) - h})) / (2 * h)
-                assert found["gradient"][p][k] == pytest.approx(float(slope), rel=1e-9, abs=1e-9), p
+                assert result["gradient"][p][k] == pytest.approx(float(slope), rel=1e-9, abs=1e-9), p
             slope = (moved(root, mpf(value) + h) - moved(root, mpf(value) - h)) / (2 * h)
-            assert found["gradient"][quantity][k] == pytest.approx(float(slope), rel=1e-9)
+            assert result["gradient"][quantity][k] == pytest.approx(float(slope), rel=1e-9)
 
 
 def turns(ec, AB, BC):
@@ -63,10 +63,10 @@ def turns(ec, AB, BC):
 
 def test_a_peak_in_the_units_of_a_machine():
     press = dx.Machine(units="mm, deg, rpm", ec=10, AB=50, BC=200, omega0=300, m_slider=1)
-    found = press.solve(over={"m_slider": (0.1, 100)}, where={("absmax", "T_in"): "20 N m"})
-    (mass,) = found["m_slider"].tolist()
+    result = press.solve(over={"m_slider": (0.1, 100)}, where={("absmax", "T_in"): "20 N m"})
+    (mass,) = result["m_slider"].tolist()
     assert press.replace(m_slider=mass).peak("T_in")["value"] == pytest.approx(20.0, rel=1e-13)
-    assert found["gradient"]["absmax", "T_in"] == pytest.approx([mass / 20.0], rel=1e-12)
+    assert result["gradient"]["absmax", "T_in"] == pytest.approx([mass / 20.0], rel=1e-12)
     (crank,) = press.solve(over={"AB": (10, 100)}, stroke=120)["AB"].tolist()
     assert press.replace(AB=crank).events()["stroke"] == pytest.approx(120.0, rel=1e-13)
 

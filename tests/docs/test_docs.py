@@ -70,9 +70,9 @@ def looks_like(value, text):
     """True if a value agrees with the printed text, numbers to the printed digits."""
     value = value.tolist() if isinstance(value, np.ndarray) else value
     if isinstance(value, (tuple, list)):
-        wanted = ast.literal_eval(text)
-        return len(value) == len(wanted) and all(
-            looks_like(v, repr(w)) for v, w in zip(value, wanted, strict=True)
+        expected = ast.literal_eval(text)
+        return len(value) == len(expected) and all(
+            looks_like(v, repr(w)) for v, w in zip(value, expected, strict=True)
         )
     if isinstance(value, float) and re.fullmatch(r"-?[\d.]+(e-?\d+)?", text):
         digits = len(re.sub(r"^-?0*\.?0*|e.*|\.", "", text))
@@ -179,11 +179,11 @@ def test_every_block_that_could_run_does():
         text = BLOCK.sub("", (ROOT / page).read_text(encoding="utf-8"))
         left[page] = set(re.findall(r"^```(\w+)$", text, re.M))
     assert set().union(*left.values()) <= {"text", "matlab", "c", "py", "math"}, left
-    wanted = (
+    expected = (
         "index", "howto", "design", "forces", "pictures", "choose", "coming-from", "promise", "scene",
         "quantities", "api",
     )  # fmt: skip
-    assert {"README.md", *(f"docs/{name}.md" for name in wanted)} <= set(WITH_BLOCKS)
+    assert {"README.md", *(f"docs/{name}.md" for name in expected)} <= set(WITH_BLOCKS)
 
 
 WITH_TABLES = [page for page in PAGES if "<!-- table: " in (ROOT / page).read_text(encoding="utf-8")]
@@ -241,14 +241,14 @@ def test_every_call_with_loads_is_in_their_table(monkeypatch):
     """Every public call that has loads among its inputs."""
     monkeypatch.syspath_prepend(ROOT / "docs" / "_site")
     loads = import_module("loads")
-    told = {call.partition("(")[0] for call in loads.CALLS}
+    message = {call.partition("(")[0] for call in loads.CALLS}
     with_inputs = set()
     for name in set(dx.__all__) - {"Machine", "define", "plot", "LoadWarning", "UnitWarning"}:
         known = inspect.signature(getattr(dx, name)).parameters
         kinds = {parameter.kind for parameter in known.values()}
         if "F_Y" in known or inspect.Parameter.VAR_KEYWORD in kinds:
             with_inputs.add(name)
-    assert with_inputs <= told
+    assert with_inputs <= message
 
 
 @pytest.mark.parametrize(("call", "kinds"), [("evaluate", 7), ("peak", 7), ("function", 1)])

@@ -40,18 +40,18 @@ TOLERANCES = {
 }
 
 
-def holds(found, exact):
+def holds(result, exact):
     """True if the range holds a value known to 50 digits, or if the value is NaN."""
     with mpmath.workdps(60):
         slack = abs(exact) * mpmath.mpf(10) ** -45
-        inside = mpmath.mpf(found["lower"]) - slack <= exact <= mpmath.mpf(found["upper"]) + slack
+        inside = mpmath.mpf(result["lower"]) - slack <= exact <= mpmath.mpf(result["upper"]) + slack
     return bool(mpmath.isnan(exact)) or bool(inside)
 
 
-def excess(found):
+def excess(result):
     """Excess width of the range over the attained one, relative to the latter."""
-    low, high = found["inner"]
-    return ((low - found["lower"]) + (found["upper"] - high)) / (high - low)
+    low, high = result["inner"]
+    return ((low - result["lower"]) + (result["upper"] - high)) / (high - low)
 
 
 def inside(rng, box):
@@ -84,11 +84,11 @@ def test_a_point_is_enclosed_to_a_last_bit(kind):
     names = all_names(STATE if kind == "state" else LAW)
     for number, point in enumerate(draw(kind, cases(2, 5))):
         for name in names[number::10]:
-            found, exact = dx.enclose(name, **point), truth(name, **point)
-            assert holds(found, exact), (name, point)
-            assert found["upper"] <= math.nextafter(found["lower"], math.inf), (name, point)
-            assert found["status"] == 0
-            assert found["tight"]
+            result, exact = dx.enclose(name, **point), truth(name, **point)
+            assert holds(result, exact), (name, point)
+            assert result["upper"] <= math.nextafter(result["lower"], math.inf), (name, point)
+            assert result["status"] == 0
+            assert result["tight"]
 
 
 @pytest.mark.sampled
@@ -97,9 +97,9 @@ def test_forces_at_a_point(kind):
     names = force_names()
     for number, point in enumerate(points("slowing down", kind, cases(2, 6))):
         for name in names[number::18]:
-            found = dx.enclose(name, **point)
-            assert holds(found, truth(name, **point)), (name, point)
-            assert found["upper"] <= math.nextafter(found["lower"], math.inf), (name, point)
+            result = dx.enclose(name, **point)
+            assert holds(result, truth(name, **point)), (name, point)
+            assert result["upper"] <= math.nextafter(result["lower"], math.inf), (name, point)
 
 
 def test_next_to_the_change_point_a_point_keeps_its_last_bit():
@@ -107,9 +107,9 @@ def test_next_to_the_change_point_a_point_keeps_its_last_bit():
         at = {"ec": 0.225, "AB": 0.125, "BC": 0.35 * (1 + 2.0**-power), "omega0": 157.0}
         for name in ("a_C", "a_C_wrt_ec", "j_C", "alpha_BC_wrt_theta"):
             point = at | {"theta": math.pi / 2 + distance}
-            found = dx.enclose(name, **point)
-            assert holds(found, truth(name, **point))
-            assert found["upper"] <= math.nextafter(found["lower"], math.inf)
+            result = dx.enclose(name, **point)
+            assert holds(result, truth(name, **point))
+            assert result["upper"] <= math.nextafter(result["lower"], math.inf)
 
 
 # ---- boxes ----------------------------------------------------------------------------------------
@@ -139,13 +139,13 @@ def test_every_point_of_a_box_is_inside(kind, seed, exponent, forces):
     name = rng.choice(choices)
     varying = [p for p in point if p != "branch" and rng.random() < 0.5]
     box = widened(rng, point, varying, 10.0**exponent)
-    found = dx.enclose(name, **box, rtol=1e-3, boxes=60)
-    assert found["lower"] <= found["inner"][0] <= found["inner"][1] <= found["upper"]
+    result = dx.enclose(name, **box, rtol=1e-3, boxes=60)
+    assert result["lower"] <= result["inner"][0] <= result["inner"][1] <= result["upper"]
     for _ in range(6):
         at = inside(rng, box)
         defined = not math.isnan(dx.evaluate(name, **at))
-        assert found["status"] in ((0, 2) if defined else (1, 2))
-        assert not defined or holds(found, truth(name, **at)), (name, box, at)
+        assert result["status"] in ((0, 2) if defined else (1, 2))
+        assert not defined or holds(result, truth(name, **at)), (name, box, at)
 
 
 @pytest.mark.sampled
@@ -153,16 +153,16 @@ def test_every_point_of_a_box_is_inside(kind, seed, exponent, forces):
 def test_boxes_one_ulp_wide(name):
     for point in draw("generic", cases(2, 6)):
         box = {p: between(x, math.nextafter(x, math.inf)) if p in LAW[:5] else x for p, x in point.items()}
-        found = dx.enclose(name, **box)
-        assert found["tight"]
-        assert found["status"] == 0
+        result = dx.enclose(name, **box)
+        assert result["tight"]
+        assert result["status"] == 0
         corners = [dict(zip(LAW[:5], c, strict=True)) for c in itertools.product(*(box[p] for p in LAW[:5]))]
         exact = [truth(name, digits=30, **point | corner) for corner in corners]
-        assert holds(found, min(exact))
-        assert holds(found, max(exact))
+        assert holds(result, min(exact))
+        assert holds(result, max(exact))
         # Over one ulp nothing bends: the extremes are at corners.
-        spread, last_bit = max(exact) - min(exact), math.ulp(found["upper"])
-        assert found["upper"] - found["lower"] <= spread + 4 * last_bit
+        spread, last_bit = max(exact) - min(exact), math.ulp(result["upper"])
+        assert result["upper"] - result["lower"] <= spread + 4 * last_bit
 
 
 @pytest.mark.parametrize(
@@ -186,13 +186,13 @@ def test_boxes_one_ulp_wide(name):
 def test_where_the_program_changes_its_form(name, box):
     """sin(theta) = 0, |sin(theta)| = 1/2 and 1, ec = 0, u = 0: tight all the same."""
     box, rng = SIZES | box, random.Random(str(box))
-    found = dx.enclose(name, **box)
-    assert found["tight"]
-    assert found["status"] == 0
-    assert excess(found) <= 2.1e-6
+    result = dx.enclose(name, **box)
+    assert result["tight"]
+    assert result["status"] == 0
+    assert excess(result) <= 2.1e-6
     exact = [truth(name, digits=20, **inside(rng, box)) for _ in range(cases(15, 60))]
-    assert all(holds(found, value) for value in exact)
-    assert found["boxes"] < 2000
+    assert all(holds(result, value) for value in exact)
+    assert result["boxes"] < 2000
 
 
 # ---- known ranges ---------------------------------------------------------------------------------
@@ -200,11 +200,11 @@ def test_where_the_program_changes_its_form(name, box):
 
 def test_a_monotone_range_is_that_of_its_ends():
     box = SIZES | {"theta": 1.0, "AB": between(0.12, 0.13), "omega0": between(150.0, 160.0)}
-    found = dx.enclose("V_B", **box)
-    assert found["lower"] == pytest.approx(0.12 * 150.0, rel=1e-15)
-    assert found["upper"] == pytest.approx(0.13 * 160.0, rel=1e-15)
-    assert found["lower"] <= 0.12 * 150.0
-    assert found["upper"] >= 0.13 * 160.0
+    result = dx.enclose("V_B", **box)
+    assert result["lower"] == pytest.approx(0.12 * 150.0, rel=1e-15)
+    assert result["upper"] == pytest.approx(0.13 * 160.0, rel=1e-15)
+    assert result["lower"] <= 0.12 * 150.0
+    assert result["upper"] >= 0.13 * 160.0
     tolerance = dx.enclose("a_C", theta=between(1.0, 1.001), **TOLERANCES)
     values = [
         dx.evaluate("a_C", theta=t, ec=e, AB=a, BC=b, omega0=w)
@@ -217,51 +217,51 @@ def test_a_monotone_range_is_that_of_its_ends():
 
 def test_a_range_with_a_sign_change_inside():
     """|ec| has its smallest value 0 inside, which is the largest margin."""
-    found = dx.enclose("margin", ec=between(-0.02, 0.01), AB=0.125, BC=between(0.34, 0.35))
-    assert found["lower"] == pytest.approx(0.34 - 0.125 - 0.02)
-    assert found["upper"] == pytest.approx(0.35 - 0.125, rel=1e-6)
-    assert found["upper"] >= 0.225
+    result = dx.enclose("margin", ec=between(-0.02, 0.01), AB=0.125, BC=between(0.34, 0.35))
+    assert result["lower"] == pytest.approx(0.34 - 0.125 - 0.02)
+    assert result["upper"] == pytest.approx(0.35 - 0.125, rel=1e-6)
+    assert result["upper"] >= 0.225
 
 
 @pytest.mark.parametrize("name", ["V_C", "a_C", "j_C", "omega_BC", "a_C_wrt_ec"])
 def test_a_turn_against_the_peak(name):
-    found, peak = dx.enclose(name, theta=TURN, **SIZES), dx.peak(name, **SIZES)["value"]
-    largest = max(abs(found["lower"]), abs(found["upper"]))
+    result, peak = dx.enclose(name, theta=TURN, **SIZES), dx.peak(name, **SIZES)["value"]
+    largest = max(abs(result["lower"]), abs(result["upper"]))
     assert peak <= largest * (1 + 1e-15)
     assert largest <= peak * (1 + 3e-6)
 
 
 def test_a_turn_with_tolerances_against_the_peaks_of_its_corners():
-    found = dx.enclose("a_C", theta=TURN, **TOLERANCES)
+    result = dx.enclose("a_C", theta=TURN, **TOLERANCES)
     corners = np.array(list(itertools.product(*TOLERANCES.values())))
     peaks = dx.peak("a_C", **dict(zip(TOLERANCES, corners.T, strict=True)))["value"]
-    assert found["tight"]
-    assert -found["lower"] == pytest.approx(peaks.max(), rel=3e-6)
-    assert -found["lower"] >= peaks.max() * (1 - 1e-14)
+    assert result["tight"]
+    assert -result["lower"] == pytest.approx(peaks.max(), rel=3e-6)
+    assert -result["lower"] >= peaks.max() * (1 - 1e-14)
 
 
 def test_friction_and_a_torque_over_a_turn_against_many_points():
     box = LOADED | {"theta": TURN, "m_rod": between(1.0, 1.1), "mu": between(0.1, 0.11)}
     theta, rod, mu = np.meshgrid(np.linspace(*TURN, 401), [1.0, 1.1], [0.1, 0.11])
     for name in ("T_in", "N_C", "F_friction"):
-        found = dx.enclose(name, **box)
+        result = dx.enclose(name, **box)
         values = dx.evaluate(name, **LOADED | {"theta": theta, "m_rod": rod, "mu": mu})
         width = np.nanmax(values) - np.nanmin(values)
-        assert found["status"] == 0
-        assert found["tight"]
-        assert found["lower"] <= np.nanmin(values) <= found["lower"] + 1e-3 * width
-        assert found["upper"] - 1e-3 * width <= np.nanmax(values) <= found["upper"]
+        assert result["status"] == 0
+        assert result["tight"]
+        assert result["lower"] <= np.nanmin(values) <= result["lower"] + 1e-3 * width
+        assert result["upper"] - 1e-3 * width <= np.nanmax(values) <= result["upper"]
 
 
 def test_a_jump_belongs_to_the_range():
     """The law turns backwards for negative omega0: V_C jumps at 0, where alpha alone moves the crank."""
-    found = dx.enclose("V_C", theta=1.0, ec=0.02, AB=0.125, BC=0.35, omega0=between(-3.0, 3.0), alpha=2.0)
+    result = dx.enclose("V_C", theta=1.0, ec=0.02, AB=0.125, BC=0.35, omega0=between(-3.0, 3.0), alpha=2.0)
     at = {"theta": 1.0, "ec": 0.02, "AB": 0.125, "BC": 0.35, "alpha": 2.0}
     for speed in (-3.0, -1e-300, 0.0, 3.0):
-        assert holds(found, truth("V_C", omega0=speed, **at))
+        assert holds(result, truth("V_C", omega0=speed, **at))
     assert (
-        found["upper"]
-        == pytest.approx(-found["lower"])
+        result["upper"]
+        == pytest.approx(-result["lower"])
         == pytest.approx(dx.evaluate("V_C", omega0=-3.0, **at), rel=1e-5)
     )
 
@@ -272,9 +272,9 @@ ROCKER = {"ec": 0.3, "AB": 0.125, "BC": 0.35, "omega0": 10.0}
 
 
 def test_nowhere_feasible():
-    found = dx.enclose("a_C", theta=between(1.4, 1.6), **ROCKER)
-    assert found["status"] == 1
-    assert all(map(math.isnan, (found["lower"], found["upper"], *found["inner"])))
+    result = dx.enclose("a_C", theta=between(1.4, 1.6), **ROCKER)
+    assert result["status"] == 1
+    assert all(map(math.isnan, (result["lower"], result["upper"], *result["inner"])))
 
 
 def test_partly_feasible():
@@ -348,23 +348,23 @@ def test_many_turns_are_as_one():
 
 
 def test_a_derivative_by_a_speed_that_may_vanish():
-    found = dx.enclose(
+    result = dx.enclose(
         "V_C_wrt_omega0", theta=between(1.0, 1.01), ec=0.05, AB=0.125, BC=0.35, omega0=between(-3.0, 3.0)
     )
     slopes = [dx.evaluate("Y_wrt_theta", theta=t, ec=0.05, AB=0.125, BC=0.35) for t in (1.0, 1.01)]
-    assert [found["upper"], found["lower"]] == pytest.approx(slopes, rel=1e-14)
+    assert [result["upper"], result["lower"]] == pytest.approx(slopes, rel=1e-14)
 
 
 # ---- how -------------------------------------------------------------------------------------------
 
 
 def test_a_limit_of_boxes_is_told_and_safe():
-    found = dx.enclose("a_C", theta=TURN, **TOLERANCES, boxes=20)
+    result = dx.enclose("a_C", theta=TURN, **TOLERANCES, boxes=20)
     better = dx.enclose("a_C", theta=TURN, **TOLERANCES)
-    assert not found["tight"]
-    assert found["boxes"] < 100
-    assert found["lower"] < better["lower"]
-    assert found["upper"] > better["upper"]
+    assert not result["tight"]
+    assert result["boxes"] < 100
+    assert result["lower"] < better["lower"]
+    assert result["upper"] > better["upper"]
 
 
 def test_a_finer_tolerance_is_kept():
@@ -413,20 +413,20 @@ def test_derivatives_line_by_line_are_the_derived_ones(name):
         parameters = tuple(p for p in own.inputs)
         derived = specialise((name, *(f"{name}_wrt_{p}" for p in parameters)), LAW_FORM, (("branch", 1.0),))
         box = {p: (point[p], point[p]) for p in parameters}
-        found = _balls.enclosures(with_derivatives(own, parameters), box, 300).values
+        result = _balls.enclosures(with_derivatives(own, parameters), box, 300).values
         for p, a, b in zip(
-            ("", *parameters), found, _balls.enclosures(derived, box, 300).values, strict=True
+            ("", *parameters), result, _balls.enclosures(derived, box, 300).values, strict=True
         ):
             assert abs(a - b) <= arb(2) ** -200 * (1 + abs(a)), (p, point)
 
 
 def test_inputs_with_units_and_of_other_kinds():
     machine = {"AB": "125 mm", "BC": "0.35 m", "omega0": "1500 rpm"}
-    found = dx.enclose("a_C", theta="60 deg", ec=between("9.9 mm", "10.1 mm"), **machine)
+    result = dx.enclose("a_C", theta="60 deg", ec=between("9.9 mm", "10.1 mm"), **machine)
     numbers = dx.enclose(
         "a_C", theta=math.pi / 3, ec=between(0.0099, 0.0101), AB=0.125, BC=0.35, omega0=50 * math.pi
     )
-    assert found["lower"] == pytest.approx(numbers["lower"], rel=1e-14)
+    assert result["lower"] == pytest.approx(numbers["lower"], rel=1e-14)
     assert dx.enclose("Y", theta=1, ec=between(0.0, 0.01), AB=between(0.125, 0.125), BC=0.35)["status"] == 0
 
 

@@ -22,27 +22,27 @@ SHAPES = [
 def test_arrays_broadcast(left, right):
     theta, ec = np.resize(columns(9)[0], left), np.resize(columns(9)[1], right)
     before = theta.copy(), ec.copy()
-    found = dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
-    assert (found.shape, found.dtype) == (np.broadcast_shapes(left, right), np.float64)
-    assert not found.size or close(found, one_by_one("V_C", theta, ec))
+    result = dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
+    assert (result.shape, result.dtype) == (np.broadcast_shapes(left, right), np.float64)
+    assert not result.size or close(result, one_by_one("V_C", theta, ec))
     assert np.array_equal(theta, before[0])
     assert np.array_equal(ec, before[1])
 
 
 @pytest.mark.parametrize("kind", [float, np.array, np.float32, np.float16, np.int8, np.uint64, np.int64])
 def test_numbers_give_a_number(kind):
-    found = dx.evaluate("V_C", **POINT | {"theta": kind(1.0)})
-    assert type(found) is (np.float64 if kind is np.array else float)
-    assert found == dx.evaluate("V_C", **POINT | {"theta": 1.0})
+    result = dx.evaluate("V_C", **POINT | {"theta": kind(1.0)})
+    assert type(result) is (np.float64 if kind is np.array else float)
+    assert result == dx.evaluate("V_C", **POINT | {"theta": 1.0})
 
 
 @pytest.mark.parametrize("kind", [np.float32, np.float16, np.int16, np.uint8, np.longdouble])
 def test_other_numbers_are_computed_as_doubles(kind):
     theta, ec = np.arange(3).astype(kind), np.zeros(3, kind)
-    found = dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
-    assert found.dtype == np.float64
-    wanted = dx.evaluate("V_C", theta=theta.astype(float), ec=ec.astype(float), **SIZES)
-    assert np.array_equal(found, wanted)
+    result = dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
+    assert result.dtype == np.float64
+    expected = dx.evaluate("V_C", theta=theta.astype(float), ec=ec.astype(float), **SIZES)
+    assert np.array_equal(result, expected)
 
 
 def swapped(array):
@@ -75,13 +75,13 @@ LAYOUTS = IN_OUT | {"read-only": read_only, "nested lists": lambda a: a.tolist()
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_any_layout_gives_the_same(layout):
     theta, ec = columns(4, 3)
-    wanted = dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
-    found = dx.evaluate("V_C", theta=LAYOUTS[layout](theta), ec=LAYOUTS[layout](ec), **SIZES)
-    assert np.array_equal(found, wanted)
+    expected = dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
+    result = dx.evaluate("V_C", theta=LAYOUTS[layout](theta), ec=LAYOUTS[layout](ec), **SIZES)
+    assert np.array_equal(result, expected)
     if layout in IN_OUT:
         out = IN_OUT[layout](np.zeros((4, 3)))
         assert dx.evaluate("V_C", theta=theta, ec=ec, **SIZES, out=out) is out
-        assert np.array_equal(out, wanted)
+        assert np.array_equal(out, expected)
 
 
 # ---- names ---------------------------------------------------------------------------------------
@@ -90,10 +90,10 @@ def test_any_layout_gives_the_same(layout):
 @pytest.mark.parametrize("theta", [1.1, np.array([1.1, 1.2])], ids=["a number", "an array"])
 @pytest.mark.parametrize("names", [["a_C", "Y", "V_C"], (*SEVERAL, "Y"), ["Y"], ["Y", "V_C", "Y"]])
 def test_a_list_gives_a_dict_in_order_without_duplicates(names, theta):
-    found = dx.evaluate(names, **POINT | {"theta": theta})
-    assert list(found) == [*dict.fromkeys(names)]
+    result = dx.evaluate(names, **POINT | {"theta": theta})
+    assert list(result) == [*dict.fromkeys(names)]
     for name in names:
-        assert np.array_equal(found[name], dx.evaluate(name, **POINT | {"theta": theta}))
+        assert np.array_equal(result[name], dx.evaluate(name, **POINT | {"theta": theta}))
 
 
 def test_what_is_not_needed_may_be_left_out():
@@ -114,23 +114,23 @@ def test_outputs_that_share_memory_are_written_one_after_the_other():
     """A kernel is promised that they do not: it writes into memory of its own then."""
     theta = np.linspace(0.0, 6.0, 40)
     design = {"ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": 157.08}
-    wanted = dx.evaluate(["V_C", "a_C"], theta=theta, **design)
+    expected = dx.evaluate(["V_C", "a_C"], theta=theta, **design)
     memory = np.empty(theta.size + 1)
     dx.evaluate(["V_C", "a_C"], theta=theta, **design, out={"V_C": memory[:-1], "a_C": memory[1:]})
-    assert memory[0] == wanted["V_C"][0]
-    assert np.array_equal(memory[1:], wanted["a_C"])
+    assert memory[0] == expected["V_C"][0]
+    assert np.array_equal(memory[1:], expected["a_C"])
 
 
 @pytest.mark.parametrize("kinds", [(np.int8, float, float), (int, float, np.float32)])
 def test_out_of_a_list_is_a_dict(kinds):
     theta, ec = columns(5)
-    wanted = dx.evaluate(SEVERAL, theta=theta, ec=ec, **SIZES)
+    expected = dx.evaluate(SEVERAL, theta=theta, ec=ec, **SIZES)
     out = {name: np.full(5, 9, kind) for name, kind in zip(SEVERAL, kinds, strict=True)}
-    found = dx.evaluate(SEVERAL, theta=theta, ec=ec, **SIZES, out=dict(reversed(out.items())))
-    assert list(found) == SEVERAL
+    result = dx.evaluate(SEVERAL, theta=theta, ec=ec, **SIZES, out=dict(reversed(out.items())))
+    assert list(result) == SEVERAL
     for name, array in out.items():
-        assert found[name] is array
-        assert np.array_equal(array, wanted[name].astype(array.dtype))
+        assert result[name] is array
+        assert np.array_equal(array, expected[name].astype(array.dtype))
 
 
 def test_a_view_or_an_array_without_axes_is_filled():
@@ -146,8 +146,8 @@ def test_a_view_or_an_array_without_axes_is_filled():
 def test_out_may_be_an_input_or_overlap_it(place):
     """As for a ufunc: as if it did not."""
     theta, ec = np.linspace(-4, 7, 9), np.zeros(8)
-    wanted = dx.evaluate("V_C", theta=theta[:-1].copy(), ec=ec, **SIZES)
-    assert np.array_equal(dx.evaluate("V_C", theta=theta[:-1], ec=ec, **SIZES, out=theta[place]), wanted)
+    expected = dx.evaluate("V_C", theta=theta[:-1].copy(), ec=ec, **SIZES)
+    assert np.array_equal(dx.evaluate("V_C", theta=theta[:-1], ec=ec, **SIZES, out=theta[place]), expected)
 
 
 @pytest.mark.parametrize(

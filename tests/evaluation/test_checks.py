@@ -39,23 +39,23 @@ ASKED = ["Y", "V_C", "a_C", "omega", "phi", "margin", "status"]  # at once, by o
 
 
 def test_every_status_and_what_it_leaves():
-    found = dx.evaluate(ASKED, **cases())
-    assert found["status"].tolist() == CODES
-    assert found["status"].dtype == np.int8
+    result = dx.evaluate(ASKED, **cases())
+    assert result["status"].tolist() == CODES
+    assert result["status"].dtype == np.int8
     # at a change point a rate has no bound
-    assert np.isfinite(found["V_C"]).tolist() == [code == 0 for code in CODES]
-    assert np.isnan(found["V_C"]).tolist() == [code not in (0, 2) for code in CODES]
+    assert np.isfinite(result["V_C"]).tolist() == [code == 0 for code in CODES]
+    assert np.isnan(result["V_C"]).tolist() == [code not in (0, 2) for code in CODES]
     # the last case is a bad acceleration, which no position needs
-    assert np.isnan(found["Y"][:-1]).tolist() == [code in (1, 4) for code in CODES[:-1]]
-    assert np.isfinite([found["Y"][4], found["phi"][4]]).all()  # it has stalled
+    assert np.isnan(result["Y"][:-1]).tolist() == [code in (1, 4) for code in CODES[:-1]]
+    assert np.isfinite([result["Y"][4], result["phi"][4]]).all()  # it has stalled
 
 
 @pytest.mark.parametrize("case", [case for case in CASES if case[-1] < 4], ids=str)
 def test_the_status_of_one_point(case):
     *values, code = case
     point = dict(zip(CASE_INPUTS, values, strict=True))
-    found = dx.evaluate("status", **point, omega0=157.0)
-    assert (type(found), found) == (int, code)
+    result = dx.evaluate("status", **point, omega0=157.0)
+    assert (type(result), result) == (int, code)
 
 
 def test_a_status_without_a_motion():
@@ -88,8 +88,8 @@ def test_a_bad_element_disturbs_no_other(name, value):
 
 
 def test_a_bad_speed_is_nan_itself():
-    found = dx.evaluate("omega", omega=np.array([2.0, math.inf, math.nan]))
-    assert np.isnan(found).tolist() == [False, True, True]
+    result = dx.evaluate("omega", omega=np.array([2.0, math.inf, math.nan]))
+    assert np.isnan(result).tolist() == [False, True, True]
 
 
 # ---- what is refused -----------------------------------------------------------------------------

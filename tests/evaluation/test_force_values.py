@@ -33,18 +33,18 @@ WORDS = {0: 5, 1: 0, 2: 6}  # how many balances of forces there are -> status
 
 def bodies(rng, kind, AB, BC):
     """Masses, centres of mass anywhere along the links, loads and friction."""
-    found = {name: rng.uniform(0.1, 3.0) for name in ("m_crank", "m_rod", "m_slider")}
-    found |= {"I_crank": 3e-2 * rng.random(), "I_rod": 3e-2 * rng.random()}
-    found |= {"r_crank": AB * rng.uniform(-0.8, 1.2), "r_rod": BC * rng.uniform(-0.2, 1.2)}
-    found |= {name: rng.uniform(-200.0, 200.0) for name in ("F_X", "F_Y")}
-    found |= {name: rng.uniform(-10.0, 10.0) for name in ("g_X", "g_Y")}
-    found["mu"] = rng.uniform(0.02, 0.3) if kind == "friction" else 0.0
+    result = {name: rng.uniform(0.1, 3.0) for name in ("m_crank", "m_rod", "m_slider")}
+    result |= {"I_crank": 3e-2 * rng.random(), "I_rod": 3e-2 * rng.random()}
+    result |= {"r_crank": AB * rng.uniform(-0.8, 1.2), "r_rod": BC * rng.uniform(-0.2, 1.2)}
+    result |= {name: rng.uniform(-200.0, 200.0) for name in ("F_X", "F_Y")}
+    result |= {name: rng.uniform(-10.0, 10.0) for name in ("g_X", "g_Y")}
+    result["mu"] = rng.uniform(0.02, 0.3) if kind == "friction" else 0.0
     if kind == "default_centres":
         for name in CENTRES:
-            del found[name]
+            del result[name]
     if kind == "loads alone":
-        found = {name: found[name] for name in ("F_X", "F_Y", "mu")}
-    return found
+        result = {name: result[name] for name in ("F_X", "F_Y", "mu")}
+    return result
 
 
 def points(geometry, kind, count):
@@ -98,15 +98,15 @@ def rough(count):
 
 
 def test_how_many_balances_of_forces_there_are():
-    found = {0: 0, 1: 0, 2: 0}
+    result = {0: 0, 1: 0, 2: 0}
     for point in rough(150):
         balances = force_balances(**point)
         forces = ["N_C", "T_in", *SHAKING, *(f"{name}_wrt_{p}" for name in SHAKING for p in ("ec", "F_X"))]
         answer = dx.evaluate([*forces, "status"], **point)
         assert answer["status"] == WORDS[balances], point
         assert {math.isnan(answer[name]) for name in forces} == {balances != 1}
-        found[balances] += 1
-    assert min(found.values()) > 10
+        result[balances] += 1
+    assert min(result.values()) > 10
 
 
 def test_values_with_much_friction():
@@ -173,8 +173,8 @@ def test_a_bad_load_is_refused(name, value, limit):
     with pytest.raises(ValueError, match=f"{name} = {value}: it must be {limit}"):
         dx.evaluate("T_in", **LAW_OF_MOTION | MACHINE | {name: value})
     column = np.array([value, 0.01])
-    found = dx.evaluate(["T_in", "status"], **LAW_OF_MOTION | MACHINE | {name: column})
-    assert (found["status"].tolist(), np.isnan(found["T_in"]).tolist()) == ([4, 0], [True, False])
+    result = dx.evaluate(["T_in", "status"], **LAW_OF_MOTION | MACHINE | {name: column})
+    assert (result["status"].tolist(), np.isnan(result["T_in"]).tolist()) == ([4, 0], [True, False])
 
 
 def test_a_centre_of_mass_that_is_not_given_is_halfway_and_moves_with_its_link():

@@ -56,12 +56,12 @@ def test_what_it_says(f, one):
 
 def test_values_are_those_of_evaluate(f):
     theta, ec = points(3000)
-    found = dict(zip(NAMES, f(theta, ec), strict=True))
-    wanted = dx.evaluate(NAMES, theta=theta, ec=ec, **SIZES)
-    assert found["status"].dtype == np.int8
-    assert np.array_equal(found["status"], wanted["status"])
+    result = dict(zip(NAMES, f(theta, ec), strict=True))
+    expected = dx.evaluate(NAMES, theta=theta, ec=ec, **SIZES)
+    assert result["status"].dtype == np.int8
+    assert np.array_equal(result["status"], expected["status"])
     for name, scale in (("V_C", 40.0), ("a_C", 1e4)):
-        assert np.allclose(found[name], wanted[name], rtol=1e-12, atol=1e-14 * scale, equal_nan=True)
+        assert np.allclose(result[name], expected[name], rtol=1e-12, atol=1e-14 * scale, equal_nan=True)
 
 
 def test_a_point_has_the_same_digits_in_any_array(f):
@@ -134,16 +134,16 @@ def test_keywords_in_any_order(f):
 
 def test_out(f, one):
     theta = np.linspace(0.0, 6.0, 1000)
-    wanted = one(theta)
+    expected = one(theta)
     place = np.empty(2000)[::2]
     assert one(theta, out=place) is place
-    assert np.array_equal(place, wanted)
+    assert np.array_equal(place, expected)
     own = theta.copy()
     one(own, out=own)
-    assert np.array_equal(own, wanted)
+    assert np.array_equal(own, expected)
     outs = {"status": np.empty(1000, np.int8), "a_C": np.empty(1000), "V_C": np.empty(1000)}
-    found = f(theta, 0.01, out=outs)
-    assert found[1] is outs["a_C"]
+    result = f(theta, 0.01, out=outs)
+    assert result[1] is outs["a_C"]
     assert np.array_equal(outs["a_C"], f(theta, 0.01)[1])
     with pytest.raises(ValueError, match="expected 3 arrays, got 1"):
         f(theta, 0.01, out=place)
@@ -152,25 +152,25 @@ def test_out(f, one):
 def test_jacobian_is_the_derivatives():
     f = dx.function(["V_C", "margin"], inputs=("theta", "ec"), **SIZES)
     theta, ec = np.linspace(0.0, 6.0, 9), np.array([[0.01], [0.4]])
-    found = f.jacobian(theta, ec)
-    wanted = dx.evaluate(["V_C_wrt_theta", "V_C_wrt_ec"], theta=theta, ec=ec, **SIZES)
+    result = f.jacobian(theta, ec)
+    expected = dx.evaluate(["V_C_wrt_theta", "V_C_wrt_ec"], theta=theta, ec=ec, **SIZES)
     for parameter in ("theta", "ec"):
-        slopes = wanted[f"V_C_wrt_{parameter}"]
-        assert found["V_C"][parameter].shape == (2, 9)
-        assert np.allclose(found["V_C"][parameter], slopes, rtol=1e-12, atol=1e-11, equal_nan=True)
-    assert set(found["margin"]) == {"theta", "ec"}
-    assert np.all(found["margin"]["theta"] == 0.0)
-    assert np.all(found["margin"]["ec"] == -1.0)
+        slopes = expected[f"V_C_wrt_{parameter}"]
+        assert result["V_C"][parameter].shape == (2, 9)
+        assert np.allclose(result["V_C"][parameter], slopes, rtol=1e-12, atol=1e-11, equal_nan=True)
+    assert set(result["margin"]) == {"theta", "ec"}
+    assert np.all(result["margin"]["theta"] == 0.0)
+    assert np.all(result["margin"]["ec"] == -1.0)
     with pytest.raises(ValueError, match="the derivative of status by theta is not derived"):
         dx.function("status", ec=0.0, **SIZES).jacobian(1.0)
 
 
 def test_by_a_given_state():
     f = dx.function("a_C", inputs=("omega", "alpha"), theta=1.0, ec=0.01, AB=0.125, BC=0.35)
-    found = f.jacobian(2.0, 3.0)["a_C"]
+    result = f.jacobian(2.0, 3.0)["a_C"]
     state = {"theta": 1.0, "ec": 0.01, "AB": 0.125, "BC": 0.35, "omega": 2.0, "alpha": 3.0}
     for parameter in ("omega", "alpha"):
-        assert found[parameter] == pytest.approx(dx.evaluate(f"a_C_wrt_{parameter}", **state), rel=1e-13)
+        assert result[parameter] == pytest.approx(dx.evaluate(f"a_C_wrt_{parameter}", **state), rel=1e-13)
 
 
 def test_inside_of_compiled_code_and_from_c(f, one):
@@ -182,15 +182,15 @@ def test_inside_of_compiled_code_and_from_c(f, one):
     def both(theta):
         return several(theta, 0.01)[1] + several(theta, 0.01)[2], single(theta)
 
-    wanted = f(1.0, 0.01)[1]
-    assert both(1.0) == (wanted, wanted)
+    expected = f(1.0, 0.01)[1]
+    assert both(1.0) == (expected, expected)
     function = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.POINTER(ctypes.c_double)] * 2)(f.address)
     out = (ctypes.c_double * 3)()
     assert function((ctypes.c_double * 2)(1.0, 0.5), out) == 0
     assert np.isnan(out[0])
     assert out[2] == 1.0
     assert function((ctypes.c_double * 2)(1.0, 0.01), out) == 0
-    assert out[1] == wanted
+    assert out[1] == expected
 
 
 ADDRESS = """
@@ -241,8 +241,8 @@ def test_more_outputs_than_a_ufunc_can_have(monkeypatch, f):
     monkeypatch.setattr(native_calls, "most_arguments", lambda: 4)
     wide = dx.function(NAMES, inputs=("theta", "ec"), **SIZES)
     theta, ec = points(700)
-    for narrow, found in zip(f(theta, ec), wide(theta, ec), strict=True):
-        assert narrow.tobytes() == found.tobytes()
+    for narrow, result in zip(f(theta, ec), wide(theta, ec), strict=True):
+        assert narrow.tobytes() == result.tobytes()
     outs = [np.empty(700, np.float64), np.empty(700), np.empty(700, np.int8)]
     assert wide(theta, ec, out=outs)[0] is outs[0]
     assert outs[0].tobytes() == f(theta, ec)[0].tobytes()

@@ -70,10 +70,10 @@ def test_an_axis_of_length_one(ec):
     theta, crank = np.linspace(0, 6, 300), np.array([0.1, 0.11, 0.12])
     grid = dx.grid("a_C", theta=theta, ec=ec, AB=crank, BC=[0.4], omega0=157.0)
     assert dict(grid.sizes) == {"theta": 300, "ec": len(ec), "AB": 3, "BC": 1}
-    wanted = dx.evaluate(
+    expected = dx.evaluate(
         "a_C", theta=theta[:, None, None], ec=np.array(ec)[:, None], AB=crank, BC=0.4, omega0=157.0
     )
-    np.testing.assert_allclose(grid["a_C"].values[..., 0], wanted, rtol=1e-13)
+    np.testing.assert_allclose(grid["a_C"].values[..., 0], expected, rtol=1e-13)
 
 
 def test_the_signature_names_every_input():

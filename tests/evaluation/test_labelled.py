@@ -28,37 +28,37 @@ LOADED = {"m_slider": 2.0, "mu": 0.05}
     ],
 )
 def test_dimensions_broadcast_by_name(names, inputs):
-    found = dx.evaluate(names, theta=THETA, ec=EC, **MACHINE, **inputs)
+    result = dx.evaluate(names, theta=THETA, ec=EC, **MACHINE, **inputs)
     expected = dx.evaluate(names, theta=ANGLES[:, None], ec=ECS, **MACHINE, **inputs)
     turned = dx.evaluate(names, theta=ANGLES, ec=ECS[:, None], **MACHINE, **inputs)
     for name in names:
-        assert found[name].dims == ("theta", "design")
-        assert found[name].dtype == expected[name].dtype
-        np.testing.assert_allclose(found[name], expected[name], rtol=1e-12)
-        np.testing.assert_allclose(found[name], turned[name].T, rtol=1e-12)
-        assert found[name].maker.values.tolist() == [1, 2, 3]
+        assert result[name].dims == ("theta", "design")
+        assert result[name].dtype == expected[name].dtype
+        np.testing.assert_allclose(result[name], expected[name], rtol=1e-12)
+        np.testing.assert_allclose(result[name], turned[name].T, rtol=1e-12)
+        assert result[name].maker.values.tolist() == [1, 2, 3]
     quantity = names[0]
-    assert found[quantity].attrs["units"] == dx.quantities()[quantity].unit
+    assert result[quantity].attrs["units"] == dx.quantities()[quantity].unit
     one = dx.evaluate(quantity, theta=THETA, ec=EC, **MACHINE, **inputs)
-    xr.testing.assert_allclose(one, found[quantity], rtol=1e-12)
-    assert one.attrs == found[quantity].attrs
+    xr.testing.assert_allclose(one, result[quantity], rtol=1e-12)
+    assert one.attrs == result[quantity].attrs
 
 
 def test_a_design_alone_has_its_dimension():
-    found = dx.evaluate("stroke", ec=EC, AB=0.125, BC=0.35)
-    assert found.dims == ("design",)
-    assert found.sel(design="b").item() == dx.events(ec=0.1, AB=0.125, BC=0.35)["stroke"]
+    result = dx.evaluate("stroke", ec=EC, AB=0.125, BC=0.35)
+    assert result.dims == ("design",)
+    assert result.sel(design="b").item() == dx.events(ec=0.1, AB=0.125, BC=0.35)["stroke"]
 
 
 def test_units_of_attributes_and_of_a_machine():
     """An attribute `units` counts; without one the units of the machine do, and answers are in them."""
     millimetres = (1e3 * EC).assign_attrs(units="mm")
-    found = dx.evaluate("V_C", theta=THETA, ec=millimetres, **MACHINE)
-    np.testing.assert_allclose(found, dx.evaluate("V_C", theta=THETA, ec=EC, **MACHINE), rtol=1e-14)
+    result = dx.evaluate("V_C", theta=THETA, ec=millimetres, **MACHINE)
+    np.testing.assert_allclose(result, dx.evaluate("V_C", theta=THETA, ec=EC, **MACHINE), rtol=1e-14)
     machine = dx.Machine(ec=0, AB=125, BC=350, omega0="157.08 rad/s", units="mm, deg, rpm")
     for given in (millimetres, 1e3 * EC):
         shown = machine.evaluate(["V_C", "status"], theta=np.rad2deg(THETA), ec=given)
-        np.testing.assert_allclose(shown["V_C"], 1e3 * found, rtol=1e-12)
+        np.testing.assert_allclose(shown["V_C"], 1e3 * result, rtol=1e-12)
         assert shown["V_C"].attrs["units"] == "mm/s"
         assert shown["status"].dims == ("theta", "design")
 
@@ -75,20 +75,20 @@ def test_a_dask_array_is_refused_with_the_remedy(call, labelled):
 @pytest.mark.parametrize("dask_way", ["parallelized", "allowed"])
 def test_apply_ufunc_goes_chunk_by_chunk(dask_way):
     pytest.importorskip("dask.array")
-    found = xr.apply_ufunc(
+    result = xr.apply_ufunc(
         lambda theta, ec: dx.evaluate("a_C", theta=theta, ec=ec, **MACHINE),
         *((THETA.chunk(2), EC) if dask_way == "parallelized" else (THETA, EC)),
         dask=dask_way, output_dtypes=[float],
     )  # fmt: skip
-    np.testing.assert_allclose(found, dx.evaluate("a_C", theta=THETA, ec=EC, **MACHINE), rtol=1e-12)
+    np.testing.assert_allclose(result, dx.evaluate("a_C", theta=THETA, ec=EC, **MACHINE), rtol=1e-12)
 
 
 def test_a_variable_has_no_coordinates_and_broadcasts_by_position():
-    found, plain = (
+    result, plain = (
         dx.evaluate(["a_C", "status"], theta=theta, ec=ECS[0], **MACHINE)
         for theta in (xr.Variable("k", ANGLES), ANGLES)
     )
-    np.testing.assert_allclose(found["a_C"], plain["a_C"], rtol=1e-12)
+    np.testing.assert_allclose(result["a_C"], plain["a_C"], rtol=1e-12)
 
 
 def test_what_does_not_fit_is_refused():
@@ -109,18 +109,18 @@ def test_inputs_of_one_index_or_dimension_vary_together_in_a_grid(kind, load):
     ec, AB = (kind(numbers, designs) for numbers in ([0.0, 0.1], [0.12, 0.1]))
     inputs = {"theta": ANGLES, "BC": [0.35, 0.4], "omega0": 10.0, "m_slider": 2.0}
     inputs |= {} if load is None else {"F_Y": load}
-    found = dx.grid(["T_in", "a_C"], ec=ec, AB=AB, **inputs)
-    assert dict(found.sizes) == {"theta": 5, "BC": 2, "design": 2}
-    assert found.ec.dims == found.AB.dims == ("design",)
+    result = dx.grid(["T_in", "a_C"], ec=ec, AB=AB, **inputs)
+    assert dict(result.sizes) == {"theta": 5, "BC": 2, "design": 2}
+    assert result.ec.dims == result.AB.dims == ("design",)
     for k, name in enumerate(designs):
         alone = dx.grid(["T_in", "a_C"], ec=float(ec.values[k]), AB=float(AB.values[k]), **inputs)
         for variable in ("T_in", "a_C", "status", "margin"):
-            here = found[variable].sel(design=name)
+            here = result[variable].sel(design=name)
             np.testing.assert_allclose(here.transpose(*alone[variable].dims), alone[variable], rtol=1e-12)
-            assert found[variable].attrs.get("units") == alone[variable].attrs.get("units")
+            assert result[variable].attrs.get("units") == alone[variable].attrs.get("units")
     machine = dx.Machine(AB=1, BC=350, omega0="10 rad/s", m_slider=2, units="mm")
     of_machine = machine.grid("a_C", theta=ANGLES, ec=1e3 * ec, AB=1e3 * AB, BC=[350, 400])
-    np.testing.assert_allclose(of_machine.a_C.transpose(*found.a_C.dims), 1e3 * found.a_C, rtol=1e-12)
+    np.testing.assert_allclose(of_machine.a_C.transpose(*result.a_C.dims), 1e3 * result.a_C, rtol=1e-12)
     assert of_machine.ec.values.tolist() == [0.0, 100.0]
     with pytest.raises(TypeError, match="reduce= is for plain arrays"):
         dx.grid("a_C", ec=ec, AB=AB, reduce={"theta": "max"}, **inputs)
@@ -129,8 +129,8 @@ def test_inputs_of_one_index_or_dimension_vary_together_in_a_grid(kind, load):
 
 
 def test_a_series_without_a_name_of_its_index_is_an_axis():
-    found = dx.grid("a_C", theta=ANGLES, ec=pd.Series(ECS), **MACHINE)
-    assert found.a_C.dims == ("theta", "ec")
+    result = dx.grid("a_C", theta=ANGLES, ec=pd.Series(ECS), **MACHINE)
+    assert result.a_C.dims == ("theta", "ec")
 
 
 def test_an_unknown_input_beside_series_with_an_index_is_named():

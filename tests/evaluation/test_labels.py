@@ -182,11 +182,11 @@ def own_units():
 )
 def test_units_at_the_border(theta, units, own_units):
     theta = theta(own_units, units) if callable(theta) else theta
-    found = dx.grid("a_C", theta=theta, ec="10 mm", AB=125 * own_units.mm, BC="0.35 m", omega0="1500 rpm")
-    np.testing.assert_allclose(found.theta, np.radians(DEGREES), rtol=1e-15)
-    assert found.theta.attrs["units"] == "rad"
-    assert (found.ec.item(), found.AB.item(), found.BC.item()) == (0.01, 0.125, 0.35)
-    assert found.omega0.item() == pytest.approx(50 * np.pi, rel=1e-15)
+    result = dx.grid("a_C", theta=theta, ec="10 mm", AB=125 * own_units.mm, BC="0.35 m", omega0="1500 rpm")
+    np.testing.assert_allclose(result.theta, np.radians(DEGREES), rtol=1e-15)
+    assert result.theta.attrs["units"] == "rad"
+    assert (result.ec.item(), result.AB.item(), result.BC.item()) == (0.01, 0.125, 0.35)
+    assert result.omega0.item() == pytest.approx(50 * np.pi, rel=1e-15)
 
 
 def test_a_coordinate_in_other_units_is_converted_everywhere():

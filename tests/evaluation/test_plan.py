@@ -42,8 +42,8 @@ def roads(name, inputs, reduce, tmp_path, monkeypatch):
     loads = {n: inputs[n] for n in ("F_Y",) if n in inputs}
     monkeypatch.setattr("desaxe.scenes.parts.grid.BLOCK", 5)
     text = {key if isinstance(key, str) else ", ".join(key): kinds for key, kinds in (reduce or {}).items()}
-    found = dx.scene({**scene, "loads": loads, "outputs": [name], "reduce": text}).run()
-    yield "scene", found.dataset
+    result = dx.scene({**scene, "loads": loads, "outputs": [name], "reduce": text}).run()
+    yield "scene", result.dataset
 
 
 def _plain(value):
@@ -68,10 +68,10 @@ def test_every_road_has_the_digits_of_the_grid(name, inputs, load, reduce, tmp_p
     inputs = {**inputs, **MASSES, **({"F_Y": load()} if load else {})}
     grid = dx.grid(name, reduce=reduce, **inputs)
     whole = bits(grid)
-    for road, found in roads(name, inputs, reduce, tmp_path, monkeypatch):
-        there = bits(found)
+    for road, result in roads(name, inputs, reduce, tmp_path, monkeypatch):
+        there = bits(result)
         assert {n: there[n] for n in whole} == whole, road
-        assert found.attrs == grid.attrs or not isinstance(road, dict)
+        assert result.attrs == grid.attrs or not isinstance(road, dict)
     if reduce is None and inputs["theta"] is EDGE["theta"]:  # a far angle has another kernel in `evaluate`
         ec, BC = np.reshape(inputs["ec"], (-1, 1)), np.array(inputs["BC"])
         there = dx.evaluate(name, **{**inputs, "theta": inputs["theta"][:, None, None], "ec": ec, "BC": BC})
@@ -84,9 +84,9 @@ def test_blocks_of_tiny_lengths_are_those_of_common_ones():
     lengths = {"ec": np.array([0.0, 0.01]), "AB": 0.1, "BC": np.array([0.3, 0.4])}
     common = dx.grid("a_C", **inputs, **lengths)
     small = {name: length * 2.0**-190 for name, length in lengths.items()}
-    found = dx.grid("a_C", chunks={"ec": 1}, **inputs, **small).compute(scheduler="synchronous")
-    assert (found.status == 0).all()
-    np.testing.assert_allclose(found.a_C * 2.0**190, common.a_C.values, rtol=1e-13)
+    result = dx.grid("a_C", chunks={"ec": 1}, **inputs, **small).compute(scheduler="synchronous")
+    assert (result.status == 0).all()
+    np.testing.assert_allclose(result.a_C * 2.0**190, common.a_C.values, rtol=1e-13)
 
 
 @pytest.mark.parametrize(
@@ -94,11 +94,11 @@ def test_blocks_of_tiny_lengths_are_those_of_common_ones():
 )
 def test_an_empty_axis_gives_empty_results_or_none(reduce):
     inputs = {"theta": np.empty(0), "ec": [0.0, 0.1], "AB": 0.1, "BC": 0.3, "omega0": 2.0}
-    found = dx.grid("a_C", reduce=reduce, **inputs)
+    result = dx.grid("a_C", reduce=reduce, **inputs)
     assert all(
-        array.size == 0 or np.isnan(array).all() for n, array in found.data_vars.items() if "a_C_s" not in n
+        array.size == 0 or np.isnan(array).all() for n, array in result.data_vars.items() if "a_C_s" not in n
     )
-    assert (found.a_C_skipped == 0).all()
+    assert (result.a_C_skipped == 0).all()
     assert bits(dx.grid("a_C", chunks={"ec": 1}, **inputs).compute()) == bits(dx.grid("a_C", **inputs))
 
 
@@ -116,14 +116,14 @@ def test_pieces_of_a_reduced_axis_combine_to_the_whole(quantity, load, most, mon
     inputs = {**EDGE, **MASSES, **({"F_Y": load()} if load else {})}
     whole = dx.grid(quantity, reduce=ALL, **inputs)
     monkeypatch.setattr("desaxe.evaluation.reductions.reduced.PIECE", most)
-    found = dx.grid(quantity, reduce=ALL, threads=1, **inputs)
-    assert bits(dx.grid(quantity, reduce=ALL, threads=3, **inputs)) == bits(found)
-    assert found.attrs == whole.attrs
+    result = dx.grid(quantity, reduce=ALL, threads=1, **inputs)
+    assert bits(dx.grid(quantity, reduce=ALL, threads=3, **inputs)) == bits(result)
+    assert result.attrs == whole.attrs
     for name in whole.variables:
         if name.endswith(("_mean", "_rms")):
-            np.testing.assert_allclose(found[name], whole[name], rtol=1e-14)
+            np.testing.assert_allclose(result[name], whole[name], rtol=1e-14)
         else:  # extremes, where they are and on which side of a jump, and how many points count
-            np.testing.assert_array_equal(found[name], whole[name])
+            np.testing.assert_array_equal(result[name], whole[name])
 
 
 def test_a_function_over_theta_is_cut_along_it(monkeypatch):
@@ -131,10 +131,10 @@ def test_a_function_over_theta_is_cut_along_it(monkeypatch):
     names = [f"F_C_Y_{kind}" for kind in ("absmax", "absmax_theta", "min", "skipped")]
     whole = dx.grid("F_C_Y", reduce={"theta": ["absmax", "min", "rms"]}, **inputs)
     monkeypatch.setattr("desaxe.evaluation.reductions.reduced.PIECE", 7)
-    found = dx.grid("F_C_Y", reduce={"theta": ["absmax", "min", "rms"]}, **inputs)
+    result = dx.grid("F_C_Y", reduce={"theta": ["absmax", "min", "rms"]}, **inputs)
     for name in names:
-        np.testing.assert_array_equal(found[name], whole[name])
-    np.testing.assert_allclose(found.F_C_Y_rms, whole.F_C_Y_rms, rtol=1e-14)
+        np.testing.assert_array_equal(result[name], whole[name])
+    np.testing.assert_allclose(result.F_C_Y_rms, whole.F_C_Y_rms, rtol=1e-14)
 
 
 @pytest.mark.parametrize(
@@ -155,12 +155,12 @@ def test_a_long_reduction_fits_into_memory(monkeypatch):
     asked = {"theta": [0.5, 1.0], "AB": 0.1, **lengths, "reduce": {("theta", "ec", "BC"): ["max", "mean"]}}
     dx.grid("Y", **asked)  # compiles
     tracemalloc.start()
-    found = dx.grid("Y", **asked)
+    result = dx.grid("Y", **asked)
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert most < 6e6  # 8 bytes a design are 2e6
-    assert found.Y_max_BC == 0.4
-    assert found.Y_skipped == 0
+    assert result.Y_max_BC == 0.4
+    assert result.Y_skipped == 0
 
 
 def test_a_stopped_sweep_has_the_digits_of_the_grid(tmp_path, monkeypatch):

@@ -33,10 +33,10 @@ def names_for(point):
     return [*QUANTITIES, *(f"{q}_wrt_{p}" for q in SECOND_ORDER for p in parameters)]
 
 
-def too_small(found, point, oracle=truth):
+def too_small(result, point, oracle=truth):
     """The names whose error is above its bound."""
     wrong = {}
-    for name, its in found.items():
+    for name, its in result.items():
         exact = oracle(name, **point)
         if mpmath.isfinite(exact) and math.isfinite(its.value):
             with mpmath.workdps(50):
@@ -70,8 +70,8 @@ def test_the_bound_holds_next_to_the_change_point():
 @pytest.mark.parametrize("kind", ["smooth", "friction", "default_centres", "loads alone"])
 def test_the_bound_holds_for_forces(kind):
     for point in points("slowing down", kind, cases(3, 8)):
-        found = dx.evaluate(FORCES, **point, quality=True)
-        assert not too_small(found, point, force_truth), point
+        result = dx.evaluate(FORCES, **point, quality=True)
+        assert not too_small(result, point, force_truth), point
 
 
 @pytest.mark.parametrize("name", ["Y", "V_C", "a_C", "j_C", "alpha_BC", "a_C_wrt_ec", "V_C_wrt_theta"])
@@ -95,8 +95,8 @@ def test_the_bound_of_forces_is_the_promise():
 
 
 def test_generic_numbers_have_many_digits():
-    found = [dx.evaluate(names_for(p), **p, quality=True) for p in draw("generic", 20)]
-    digits = np.array([its.digits for row in found for its in row.values()])
+    result = [dx.evaluate(names_for(p), **p, quality=True) for p in draw("generic", 20)]
+    digits = np.array([its.digits for row in result for its in row.values()])
     assert np.median(digits) > 13.5
     assert np.mean(digits > 12) > 0.95
     assert digits.max() <= 17
@@ -109,17 +109,17 @@ def test_conditions_are_relative_changes(name):
         joint = "_" if "_wrt_" in name else "_wrt_"
         for parameter, condition in its.conditions.items():
             slope = truth(f"{name}{joint}{parameter}", **point)
-            wanted = abs(float(point[parameter] * slope / truth(name, **point)))
-            assert condition == pytest.approx(wanted, rel=1e-9)
+            expected = abs(float(point[parameter] * slope / truth(name, **point)))
+            assert condition == pytest.approx(expected, rel=1e-9)
 
 
 def test_only_what_a_quantity_depends_on_has_a_condition():
     assert set(dx.evaluate("Y", **POINT, quality=True).conditions) == {"theta", "ec", "AB", "BC"}
     state = POINT | {"omega": 3.0, "omega0": None, "m_slider": 2.0}
-    found = dx.evaluate("T_in", **state, quality=True).conditions
-    assert set(found) == {"theta", "ec", "AB", "BC", "omega", "m_slider"}
-    assert found["m_slider"] == pytest.approx(1.0)
-    assert found["omega"] == pytest.approx(2.0)
+    result = dx.evaluate("T_in", **state, quality=True).conditions
+    assert set(result) == {"theta", "ec", "AB", "BC", "omega", "m_slider"}
+    assert result["m_slider"] == pytest.approx(1.0)
+    assert result["omega"] == pytest.approx(2.0)
 
 
 def test_one_name_or_many_numbers_or_arrays():
@@ -201,6 +201,6 @@ def test_on_the_command_line(capsys):
         r"a_C  \{value: -.*omega0: 2}, error_bound: .*, digits: 13\..*}\n", capsys.readouterr().out
     )
     assert main([*WORDS, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["a_C"]["conditions"]["omega0"] == pytest.approx(2.0)
-    assert 13 < found["a_C"]["digits"] < 15
+    result = json.loads(capsys.readouterr().out)
+    assert result["a_C"]["conditions"]["omega0"] == pytest.approx(2.0)
+    assert 13 < result["a_C"]["digits"] < 15

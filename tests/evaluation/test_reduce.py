@@ -29,24 +29,24 @@ def by_numpy(kind, values, axis):
 
 def compare(names, reduced_axis, **inputs):
     """Every kind against the stored grid; the reduced dataset."""
-    found = dx.grid(names, reduce={reduced_axis: KINDS}, **inputs)
+    result = dx.grid(names, reduce={reduced_axis: KINDS}, **inputs)
     whole = dx.grid(names, **inputs)
     for name in names:
         values, axis = whole[name].values, whole[name].get_axis_num(reduced_axis)
         scale = np.nanmax(np.abs(values))
         for kind in KINDS:
-            wanted = by_numpy(kind, values, axis)
+            expected = by_numpy(kind, values, axis)
             if kind in ("mean", "rms"):
-                np.testing.assert_allclose(found[f"{name}_{kind}"], wanted, rtol=1e-13, atol=1e-14 * scale)
+                np.testing.assert_allclose(result[f"{name}_{kind}"], expected, rtol=1e-13, atol=1e-14 * scale)
             else:
-                np.testing.assert_array_equal(found[f"{name}_{kind}"], wanted)
+                np.testing.assert_array_equal(result[f"{name}_{kind}"], expected)
         turned = {"max": values, "min": -values, "absmax": np.abs(values)}
         for kind, its in turned.items():
             at = np.argmax(np.where(np.isnan(its), -np.inf, its), axis)
             place = np.where(np.isnan(its).all(axis), np.nan, np.asarray(inputs[reduced_axis])[at])
-            np.testing.assert_array_equal(found[f"{name}_{kind}_{reduced_axis}"], place)
-        np.testing.assert_array_equal(found[f"{name}_skipped"], np.isnan(values).sum(axis))
-    return found
+            np.testing.assert_array_equal(result[f"{name}_{kind}_{reduced_axis}"], place)
+        np.testing.assert_array_equal(result[f"{name}_skipped"], np.isnan(values).sum(axis))
+    return result
 
 
 # Up to a fully infeasible design. One kernel serves all that reduce these.
@@ -54,32 +54,32 @@ NAMES, DESIGNS = ["a_C", "V_C"], {"ec": [0.0, 0.2, 0.24, 0.6], "BC": [0.35, 0.4]
 
 
 def test_over_theta_with_infeasible_designs():
-    found = compare(NAMES, "theta", theta=TURN[::18], **DESIGNS)  # rows of 40 leave a rest after the lanes
-    assert found.a_C_absmax.dims == ("ec", "BC")
-    assert int(found.a_C_skipped.sel(ec=0.6, BC=0.35)) == 41
-    assert np.isnan(found.a_C_rms.sel(ec=0.6, BC=0.35))
-    assert 0 < int(found.a_C_skipped.sel(ec=0.24, BC=0.35)) < 41
+    result = compare(NAMES, "theta", theta=TURN[::18], **DESIGNS)  # rows of 40 leave a rest after the lanes
+    assert result.a_C_absmax.dims == ("ec", "BC")
+    assert int(result.a_C_skipped.sel(ec=0.6, BC=0.35)) == 41
+    assert np.isnan(result.a_C_rms.sel(ec=0.6, BC=0.35))
+    assert 0 < int(result.a_C_skipped.sel(ec=0.24, BC=0.35)) < 41
 
 
 @pytest.mark.thorough
 def test_over_another_axis():
-    found = compare(["a_C"], "ec", ec=np.linspace(-0.2, 0.24, 23), theta=TURN[::60], BC=0.35, **MACHINE)
-    assert found.a_C_max.dims == ("theta",)
-    assert found.a_C_max_ec.units == "m"
+    result = compare(["a_C"], "ec", ec=np.linspace(-0.2, 0.24, 23), theta=TURN[::60], BC=0.35, **MACHINE)
+    assert result.a_C_max.dims == ("theta",)
+    assert result.a_C_max_ec.units == "m"
 
 
 @pytest.mark.thorough
 def test_of_one_design():
-    found = compare(["a_C"], "theta", theta=TURN[::10], ec=0.01, BC=0.35, **MACHINE)
-    assert found.a_C_absmax.dims == ()
+    result = compare(["a_C"], "theta", theta=TURN[::10], ec=0.01, BC=0.35, **MACHINE)
+    assert result.a_C_absmax.dims == ()
 
 
 @pytest.mark.thorough
 def test_bad_elements_are_skipped():
     theta = TURN[::10].copy()
     theta[[3, 50]] = np.nan, np.inf
-    found = compare(["a_C"], "theta", theta=theta, ec=[0.01, 0.02], BC=0.35, **MACHINE)
-    assert found.a_C_skipped.values.tolist() == [2, 2]
+    result = compare(["a_C"], "theta", theta=theta, ec=[0.01, 0.02], BC=0.35, **MACHINE)
+    assert result.a_C_skipped.values.tolist() == [2, 2]
 
 
 @pytest.mark.thorough
@@ -90,17 +90,17 @@ def test_rows_longer_than_a_block():
 
 def test_squares_of_any_scale():
     unit = dx.grid(NAMES, theta=TURN[::30], **{**DESIGNS, "omega0": 1.0})
-    wanted = by_numpy("rms", unit.a_C, 0)
+    expected = by_numpy("rms", unit.a_C, 0)
     for speed in (1e-59, 1e59):
-        found = dx.grid(NAMES, reduce={"theta": KINDS}, theta=TURN[::30], **{**DESIGNS, "omega0": speed})
-        np.testing.assert_allclose(found.a_C_rms / speed / speed, wanted, rtol=1e-14)
+        result = dx.grid(NAMES, reduce={"theta": KINDS}, theta=TURN[::30], **{**DESIGNS, "omega0": speed})
+        np.testing.assert_allclose(result.a_C_rms / speed / speed, expected, rtol=1e-14)
 
 
 def test_the_sum_keeps_what_rounding_takes():
     # V_C is 20 m/s; its mean over angles that are symmetric to 0 is 0, exactly.
     theta = np.arange(-100_000, 100_001) * 2.0**-15
-    found = dx.grid(NAMES, reduce={"theta": KINDS}, theta=theta, **DESIGNS)
-    assert (abs(found.V_C_mean.sel(ec=0.0)) < 1e-22).all()
+    result = dx.grid(NAMES, reduce={"theta": KINDS}, theta=theta, **DESIGNS)
+    assert (abs(result.V_C_mean.sel(ec=0.0)) < 1e-22).all()
 
 
 def test_threads_change_nothing():
@@ -121,22 +121,24 @@ def test_the_grid_is_never_stored(monkeypatch):
         return arrays
 
     monkeypatch.setattr(Points, "compute", computed)
-    found = dx.grid(NAMES, reduce={"theta": KINDS}, theta=TURN, **DESIGNS | {"ec": np.linspace(0.0, 0.6, 97)})
+    result = dx.grid(
+        NAMES, reduce={"theta": KINDS}, theta=TURN, **DESIGNS | {"ec": np.linspace(0.0, 0.6, 97)}
+    )
     assert sum(sizes) == TURN.size * 97 * 2
     assert max(sizes) <= BLOCK
-    told = [*KINDS, *(f"{kind}_theta" for kind in KINDS[:3]), "skipped"]
-    assert set(found.data_vars) == {f"{name}_{what}" for name in NAMES for what in told}
+    message = [*KINDS, *(f"{kind}_theta" for kind in KINDS[:3]), "skipped"]
+    assert set(result.data_vars) == {f"{name}_{what}" for name in NAMES for what in message}
 
 
 def test_labels():
-    found = dx.grid(
+    result = dx.grid(
         "a_C", reduce={"theta": ["absmax", "rms"]}, theta=TURN[:9], ec=[0, 0.1], BC=0.35, **MACHINE
     )
-    assert found.a_C_absmax.attrs["cell_methods"] == "theta: maximum_absolute_value"
-    assert found.a_C_rms.attrs["cell_methods"] == "theta: root_mean_square"
-    assert found.a_C_absmax.units == "m/s^2"
-    assert found.a_C_absmax_theta.units == "rad"
-    assert "theta" not in found.coords
+    assert result.a_C_absmax.attrs["cell_methods"] == "theta: maximum_absolute_value"
+    assert result.a_C_rms.attrs["cell_methods"] == "theta: root_mean_square"
+    assert result.a_C_absmax.units == "m/s^2"
+    assert result.a_C_absmax_theta.units == "rad"
+    assert "theta" not in result.coords
 
 
 @pytest.mark.parametrize(
@@ -182,36 +184,36 @@ FEASIBLE = {**BOTH, "ec": [0.0, 0.1, 0.2]}
 
 @pytest.mark.thorough
 def test_two_axes_at_once_are_all_their_points():
-    found = dx.grid(
+    result = dx.grid(
         "a_C", reduce={("theta", "ec"): [*KINDS, "std", "median", "p95", ("percentile", 12.5)]}, **BOTH
     )
     values = dx.grid("a_C", **BOTH).a_C.transpose("BC", "theta", "ec").values.reshape(2, -1)
-    assert found.a_C_rms.dims == ("BC",)
+    assert result.a_C_rms.dims == ("BC",)
     for kind in KINDS:
-        np.testing.assert_allclose(found[f"a_C_{kind}"], by_numpy(kind, values, -1), rtol=1e-13)
-    np.testing.assert_allclose(found.a_C_std, np.nanstd(values, -1), rtol=1e-13)
+        np.testing.assert_allclose(result[f"a_C_{kind}"], by_numpy(kind, values, -1), rtol=1e-13)
+    np.testing.assert_allclose(result.a_C_std, np.nanstd(values, -1), rtol=1e-13)
     for name, q in (("median", 50), ("p95", 95), ("p12.5", 12.5)):
-        np.testing.assert_allclose(found[f"a_C_{name}"], np.nanpercentile(values, q, -1), rtol=1e-13)
-    np.testing.assert_array_equal(found.a_C_skipped, np.isnan(values).sum(-1))
+        np.testing.assert_allclose(result[f"a_C_{name}"], np.nanpercentile(values, q, -1), rtol=1e-13)
+    np.testing.assert_array_equal(result.a_C_skipped, np.isnan(values).sum(-1))
     for BC, most, theta, ec in zip(
-        [0.35, 0.4], found.a_C_absmax, found.a_C_absmax_theta, found.a_C_absmax_ec, strict=True
+        [0.35, 0.4], result.a_C_absmax, result.a_C_absmax_theta, result.a_C_absmax_ec, strict=True
     ):
         there = dx.evaluate("a_C", theta=float(theta), ec=float(ec), BC=BC, **MACHINE)
         assert abs(there) == pytest.approx(float(most), rel=1e-13)
-    assert found.a_C_rms.attrs["cell_methods"] == "theta: ec: root_mean_square"
-    assert found.a_C_rms.attrs["units"] == "m/s^2"
+    assert result.a_C_rms.attrs["cell_methods"] == "theta: ec: root_mean_square"
+    assert result.a_C_rms.attrs["units"] == "m/s^2"
 
 
 def test_one_axis_after_the_other_in_the_order_given():
     whole = dx.grid("a_C", **FEASIBLE).a_C
-    found = dx.grid("a_C", reduce={"theta": ["max", "mean"], "ec": ["min", "mean"]}, **FEASIBLE)
-    np.testing.assert_allclose(found.a_C_max_min, whole.max("theta").min("ec"), rtol=1e-14)
-    np.testing.assert_allclose(found.a_C_max_mean, whole.max("theta").mean("ec"), rtol=1e-14)
-    np.testing.assert_allclose(found.a_C_mean, whole.mean(["theta", "ec"]), rtol=1e-12)  # of all points
-    np.testing.assert_array_equal(found.a_C_max_min_ec, whole.max("theta").idxmin("ec"))
-    there = whole.sel(ec=found.a_C_max_min_ec, theta=found.a_C_max_min_theta)
-    np.testing.assert_allclose(there, found.a_C_max_min, rtol=1e-13)
-    assert "a_C_max_mean_theta" not in found
+    result = dx.grid("a_C", reduce={"theta": ["max", "mean"], "ec": ["min", "mean"]}, **FEASIBLE)
+    np.testing.assert_allclose(result.a_C_max_min, whole.max("theta").min("ec"), rtol=1e-14)
+    np.testing.assert_allclose(result.a_C_max_mean, whole.max("theta").mean("ec"), rtol=1e-14)
+    np.testing.assert_allclose(result.a_C_mean, whole.mean(["theta", "ec"]), rtol=1e-12)  # of all points
+    np.testing.assert_array_equal(result.a_C_max_min_ec, whole.max("theta").idxmin("ec"))
+    there = whole.sel(ec=result.a_C_max_min_ec, theta=result.a_C_max_min_theta)
+    np.testing.assert_allclose(there, result.a_C_max_min, rtol=1e-13)
+    assert "a_C_max_mean_theta" not in result
     all_points = dx.grid("a_C", reduce={"theta": ["std", "p20"], "ec": ["std", "p20", "max"]}, **FEASIBLE)
     np.testing.assert_allclose(all_points.a_C_std, whole.std(["theta", "ec"]), rtol=1e-12)
     np.testing.assert_allclose(all_points.a_C_p20, whole.quantile(0.2, ["theta", "ec"]), rtol=1e-12)
@@ -227,15 +229,15 @@ def test_measures_of_single_names_and_a_function_of_the_design():
 
     inputs = {**FEASIBLE, "m_slider": 2.0}
     asked = [("rms", "T_in"), ("at", "60 deg", "Y"), (("percentile", 95), "T_in"), squares]
-    found = dx.grid([], reduce=asked, **inputs)
+    result = dx.grid([], reduce=asked, **inputs)
     whole = dx.grid("T_in", **inputs).T_in
-    np.testing.assert_allclose(found.T_in_rms, np.sqrt((whole**2).mean("theta")), rtol=1e-13)
-    np.testing.assert_allclose(found.T_in_p95, whole.quantile(0.95, "theta"), rtol=1e-12)
+    np.testing.assert_allclose(result.T_in_rms, np.sqrt((whole**2).mean("theta")), rtol=1e-13)
+    np.testing.assert_allclose(result.T_in_p95, whole.quantile(0.95, "theta"), rtol=1e-12)
     sixty = dx.grid("Y", **{**FEASIBLE, "theta": "60 deg"}).Y
-    np.testing.assert_allclose(found.Y_at_60_deg, sixty, rtol=1e-15)
-    np.testing.assert_array_equal(found.squares_wrt_ec, np.broadcast_to([[0.0], [0.2], [0.4]], (3, 2)))
-    assert found.squares_wrt_BC.dims == ("ec", "BC")
-    assert set(found.sizes) == {"ec", "BC"}
+    np.testing.assert_allclose(result.Y_at_60_deg, sixty, rtol=1e-15)
+    np.testing.assert_array_equal(result.squares_wrt_ec, np.broadcast_to([[0.0], [0.2], [0.4]], (3, 2)))
+    assert result.squares_wrt_BC.dims == ("ec", "BC")
+    assert set(result.sizes) == {"ec", "BC"}
 
 
 def test_a_large_one_is_computed_in_blocks(monkeypatch):
@@ -247,18 +249,18 @@ def test_a_large_one_is_computed_in_blocks(monkeypatch):
 def test_own_quantities_are_told_in_a_reduced_result():
     dx.define("shoe", "0.08 * abs(N_C * V_C)", unit="W")
     try:
-        found = dx.grid("shoe", reduce={"theta": "mean"}, **{**FEASIBLE, "m_slider": 1.0})
-        assert "0.08 * abs(N_C * V_C)" in found.attrs["quantities"]
+        result = dx.grid("shoe", reduce={"theta": "mean"}, **{**FEASIBLE, "m_slider": 1.0})
+        assert "0.08 * abs(N_C * V_C)" in result.attrs["quantities"]
     finally:
         dx.undefine("shoe")
 
 
 def test_in_units_every_result_is_that_of_its_quantity():
     machine = dx.Machine(AB="125 mm", BC="350 mm", ec="10 mm", omega0="1500 rpm", units="mm")
-    found = machine.grid("Y", theta=TURN[::40], reduce={"theta": ["std", ("at", "60 deg", "Y")]})
+    result = machine.grid("Y", theta=TURN[::40], reduce={"theta": ["std", ("at", "60 deg", "Y")]})
     in_metres = dx.grid("Y", theta=TURN[::40], AB=0.125, BC=0.35, ec=0.01).Y
-    assert found.Y_std.units == found.Y_at_60_deg.units == "mm"
-    assert float(found.Y_std) == pytest.approx(1000.0 * float(in_metres.std()), rel=1e-12)
+    assert result.Y_std.units == result.Y_at_60_deg.units == "mm"
+    assert float(result.Y_std) == pytest.approx(1000.0 * float(in_metres.std()), rel=1e-12)
 
 
 def test_a_new_kind_of_reduction_is_one_row(monkeypatch):
@@ -266,8 +268,8 @@ def test_a_new_kind_of_reduction_is_one_row(monkeypatch):
     monkeypatch.setitem(kinds.KINDS, "range", row)
     inputs = {"theta": np.linspace(0.0, 6.0, 13), "ec": [0.0, 0.02], "AB": 0.1, "BC": 0.3, "omega0": 5.0}
     values = dx.grid("a_C", **inputs).a_C
-    found = dx.grid("a_C", reduce={"theta": "range"}, **inputs).a_C_range
-    np.testing.assert_array_equal(found, values.max("theta") - values.min("theta"))
-    assert found.attrs["cell_methods"] == "theta: range"
+    result = dx.grid("a_C", reduce={"theta": "range"}, **inputs).a_C_range
+    np.testing.assert_array_equal(result, values.max("theta") - values.min("theta"))
+    assert result.attrs["cell_methods"] == "theta: range"
     with pytest.raises(ValueError, match="reduce: 'rang': did you mean range"):
         dx.grid("a_C", reduce={"theta": "rang"}, **inputs)

@@ -80,9 +80,9 @@ def compiled(names, rows):
         ]
         columns = {name: np.array([rows[number][name] for number in chosen]) for name in inputs}
         if chosen:
-            found = dx.evaluate(names, **columns, branch=branch)
+            result = dx.evaluate(names, **columns, branch=branch)
             for place, number in enumerate(chosen):
-                answers[number] = {name: float(found[name][place]) for name in names}
+                answers[number] = {name: float(result[name][place]) for name in names}
     return answers
 
 
@@ -216,15 +216,15 @@ def test_odd_numbers_in_a_column(name):
     """No crash; NaN and status 4 where the number is bad; a number that is good is told apart."""
     column = np.array([*ODD, USUAL[name]])
     columns = {each: np.full(len(column), usual) for each, usual in USUAL.items()}  # one kernel serves all
-    found = dx.evaluate([*BY_KERNEL, "status"], **columns | {name: column})
+    result = dx.evaluate([*BY_KERNEL, "status"], **columns | {name: column})
     least = {"AB": 0.0, "BC": 1e-60}.get(name, -math.inf)
     for place, number in enumerate(column):
         bad = not (math.isfinite(number) and number >= least and (name == "theta" or abs(number) <= 1e60))
-        assert (found["status"][place] == 4) == bad, number
-        if found["status"][place] != 0:
-            assert all(math.isnan(found[n][place]) for n in ("V_C", "a_C")) or found["status"][place] == 2
-    assert found["status"][-1] == 0
-    assert all(math.isfinite(found[n][-1]) for n in BY_KERNEL)
+        assert (result["status"][place] == 4) == bad, number
+        if result["status"][place] != 0:
+            assert all(math.isnan(result[n][place]) for n in ("V_C", "a_C")) or result["status"][place] == 2
+    assert result["status"][-1] == 0
+    assert all(math.isfinite(result[n][-1]) for n in BY_KERNEL)
 
 
 @pytest.mark.sampled
@@ -232,9 +232,9 @@ def test_odd_numbers_in_a_column(name):
 @settings(max_examples=cases(60, 300), deadline=None)
 def test_odd_numbers_do_not_crash(at):
     at = at | {"AB": abs(at["AB"]), "BC": max(abs(at["BC"]), 1e-60)}
-    found = dx.evaluate([*NAMES, "status", "margin"], **at)
-    assert found["status"] in (0, 1, 2, 3)
-    assert found["status"] != 1 or math.isnan(found["V_C"])
+    result = dx.evaluate([*NAMES, "status", "margin"], **at)
+    assert result["status"] in (0, 1, 2, 3)
+    assert result["status"] != 1 or math.isnan(result["V_C"])
 
 
 @pytest.mark.sampled

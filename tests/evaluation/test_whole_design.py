@@ -12,17 +12,17 @@ LONG = {"AB": 0.04, "BC": 0.064}
 NAMES = [*WHOLE, *(f"{name}_wrt_{p}" for name in WHOLE for p in LENGTHS)]
 
 
-def expected(name, found):
+def expected(name, result):
     base, _, p = name.partition("_wrt_")
-    return found["gradient"][base][p] if p else found[name]
+    return result["gradient"][base][p] if p else result[name]
 
 
 @pytest.mark.parametrize("branch", [1, -1])
 @pytest.mark.parametrize("omega0", [None, 3.0, -3.0])
 def test_they_are_those_of_events(branch, omega0):
     one = dx.events(branch=branch, omega0=omega0, **DESIGN)
-    found = dx.evaluate(NAMES, branch=branch, omega0=omega0, **DESIGN)
-    assert dict(found) == {name: expected(name, one) for name in NAMES}
+    result = dx.evaluate(NAMES, branch=branch, omega0=omega0, **DESIGN)
+    assert dict(result) == {name: expected(name, one) for name in NAMES}
     many = dx.events(branch=branch, omega0=omega0, ec=ECS, **LONG)
     arrays = dx.evaluate([*NAMES, "status"], branch=branch, omega0=omega0, ec=ECS, **LONG)
     for name in NAMES:
@@ -67,9 +67,9 @@ def test_strokes_hang_on_the_sign_of_each_speed():
     speeds = np.array([1.0, -1.0, 2.0, np.nan])
     strokes = ["advance_angle", "return_angle", "advance_angle_wrt_BC"]
     known = dx.events(omega0=speeds, **DESIGN)
-    found = dx.evaluate(strokes, omega0=speeds, **DESIGN)
+    result = dx.evaluate(strokes, omega0=speeds, **DESIGN)
     for name in strokes:
-        np.testing.assert_allclose(found[name], expected(name, known), rtol=1e-15)
+        np.testing.assert_allclose(result[name], expected(name, known), rtol=1e-15)
     both = dx.grid(["advance_angle", "stroke"], ec=ECS, omega0=speeds, **LONG)
     assert both.advance_angle.dims == ("ec", "omega0")
     assert both.stroke.dims == ("ec",)
@@ -96,8 +96,8 @@ def test_what_is_made_of_a_stroke_hangs_on_the_sign_too():
 def test_a_grid_has_its_axes_in_the_order_given_whatever_name_comes_first():
     for first in ("stroke", "margin", "V_C"):
         for chunks in (None, 2):
-            found = dx.grid([first, "V_C"], theta=[0.0, 1.0], ec=ECS, omega0=1.0, chunks=chunks, **LONG)
-            assert list(found.sizes) == ["theta", "ec"]
+            result = dx.grid([first, "V_C"], theta=[0.0, 1.0], ec=ECS, omega0=1.0, chunks=chunks, **LONG)
+            assert list(result.sizes) == ["theta", "ec"]
 
 
 def test_what_is_made_of_them_is_of_the_whole_design_too():
@@ -113,14 +113,14 @@ def test_what_is_made_of_them_is_of_the_whole_design_too():
 
 def test_enclosures_hold_what_is_in_them():
     for name in ("stroke", "time_ratio", "theta_outer", "max_pressure_angle"):
-        found = dx.enclose(name, ec=dx.between(-0.01, 0.02), AB=dx.between(0.03, 0.04), BC=0.08)
+        result = dx.enclose(name, ec=dx.between(-0.01, 0.02), AB=dx.between(0.03, 0.04), BC=0.08)
         inside = [
             dx.evaluate(name, ec=ec, AB=AB, BC=0.08)
             for ec in np.linspace(-0.01, 0.02, 7)
             for AB in np.linspace(0.03, 0.04, 5)
         ]
-        assert found["lower"] <= min(inside) + 1e-15  # these are rounded
-        assert max(inside) - 1e-15 <= found["upper"]
+        assert result["lower"] <= min(inside) + 1e-15  # these are rounded
+        assert max(inside) - 1e-15 <= result["upper"]
 
 
 @pytest.mark.parametrize("name", ["stroke", "time_ratio", "Y_inner", "max_pressure_angle", "theta_inner"])
@@ -142,16 +142,18 @@ def slenderness():
 
 def test_what_is_made_of_them_is_mapped_optimised_and_toleranced(slenderness):
     axes = {"ec": np.linspace(0.0, 0.02, 5), "AB": np.linspace(0.02, 0.04, 3)}
-    wanted = dx.evaluate("stroke", ec=axes["ec"][:, None], AB=axes["AB"], BC=0.064) / 0.064
+    expected = dx.evaluate("stroke", ec=axes["ec"][:, None], AB=axes["AB"], BC=0.064) / 0.064
     chart = dx.design_map([slenderness], derivatives=True, BC=0.064, **axes)
-    np.testing.assert_allclose(chart[slenderness], wanted, rtol=1e-14)
+    np.testing.assert_allclose(chart[slenderness], expected, rtol=1e-14)
     slope = dx.evaluate("stroke_wrt_AB", ec=axes["ec"][:, None], AB=axes["AB"], BC=0.064) / 0.064
     np.testing.assert_allclose(chart[f"{slenderness}_wrt_AB"], slope, rtol=1e-13)
     over = {"ec": (0.0, 0.02), "AB": (0.02, 0.04)}
-    found = dx.optimize(over=over, BC=0.064, maximize=slenderness, keep={"time_ratio": (None, 1.2)})
-    assert found["status"] == 0
-    assert found["value"] == pytest.approx(dx.evaluate(slenderness, ec=found["ec"], AB=found["AB"], BC=0.064))
-    assert dx.events(ec=found["ec"], AB=found["AB"], BC=0.064)["time_ratio"] == pytest.approx(1.2)
+    result = dx.optimize(over=over, BC=0.064, maximize=slenderness, keep={"time_ratio": (None, 1.2)})
+    assert result["status"] == 0
+    assert result["value"] == pytest.approx(
+        dx.evaluate(slenderness, ec=result["ec"], AB=result["AB"], BC=0.064)
+    )
+    assert dx.events(ec=result["ec"], AB=result["AB"], BC=0.064)["time_ratio"] == pytest.approx(1.2)
     spread = dx.tolerance(slenderness, ec=0.01, AB=dx.plus_minus(0.04, 0.001), BC=0.064)
     assert spread["gradient"]["AB"] == pytest.approx(dx.evaluate(f"{slenderness}_wrt_AB", ec=0.01, **LONG))
 

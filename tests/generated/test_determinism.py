@@ -19,5 +19,5 @@ def test_another_hash_seed_writes_the_same_bytes(tmp_path):
         check=True,
     )
     folder = Path(desaxe.generated.__file__).parent
-    wanted = {path.name: path.read_bytes() for path in folder.glob("*.py")}
-    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == wanted
+    expected = {path.name: path.read_bytes() for path in folder.glob("*.py")}
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == expected

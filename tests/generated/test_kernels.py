@@ -84,12 +84,12 @@ def test_a_kernel_gives_what_evaluate_gives(group, branch):
     for place, (name, value) in enumerate(BAD):
         columns[name][10 + place] = value
     columns = {name: column for name, column in columns.items() if name in taken}
-    found = evaluate(group, **columns, branch=branch)
-    wanted = dx.evaluate(list(OUTPUTS[group]), **columns, branch=branch)
+    result = evaluate(group, **columns, branch=branch)
+    expected = dx.evaluate(list(OUTPUTS[group]), **columns, branch=branch)
     for name in OUTPUTS[group]:
-        assert np.isnan(wanted[name]).any() or found[name].dtype == np.int8
-        scale = np.nanmax(np.abs(wanted[name]))
-        np.testing.assert_allclose(found[name], wanted[name], rtol=1e-11, atol=1e-13 * scale, err_msg=name)
+        assert np.isnan(expected[name]).any() or result[name].dtype == np.int8
+        scale = np.nanmax(np.abs(expected[name]))
+        np.testing.assert_allclose(result[name], expected[name], rtol=1e-11, atol=1e-13 * scale, err_msg=name)
 
 
 @pytest.mark.parametrize("group", GROUPS, ids=lambda group: group.name)
@@ -111,8 +111,8 @@ def test_both_ways_to_machine_code_have_the_same_bits(group):
     )
     outs = [np.empty(count, module_kind(group, name)) for name in group.outputs]
     CompiledKernel(kernel).run(columns | {"branch": 1.0}, outs)
-    for name, found, bits in zip(group.outputs, evaluate(group.name, **columns).values(), outs, strict=True):
-        np.testing.assert_array_equal(found, bits, err_msg=name)
+    for name, result, bits in zip(group.outputs, evaluate(group.name, **columns).values(), outs, strict=True):
+        np.testing.assert_array_equal(result, bits, err_msg=name)
 
 
 WIDE = Program(("ec",), (Line("wide", "lt", ("ec", -inf)),), ("wide",), {})  # never: the stable form alone
@@ -126,11 +126,11 @@ def module_kind(group, name):
 def test_it_broadcasts(group):
     columns = points(5)
     grid = {name: values[:, None] for name, values in columns.items()} | {"theta": np.array([0.1, 0.2, 0.3])}
-    found = evaluate(group, **grid)
+    result = evaluate(group, **grid)
     for column, theta in enumerate(grid["theta"]):
         row = evaluate(group, **columns | {"theta": float(theta)})
-        assert {name: values.shape for name, values in found.items()} == dict.fromkeys(OUTPUTS[group], (5, 3))
-        assert all(np.array_equal(found[name][:, column], row[name], equal_nan=True) for name in row)
+        assert {name: values.shape for name, values in result.items()} == dict.fromkeys(OUTPUTS[group], (5, 3))
+        assert all(np.array_equal(result[name][:, column], row[name], equal_nan=True) for name in row)
 
 
 @pytest.mark.parametrize("group", NAMES)
@@ -150,12 +150,12 @@ def test_an_angle_of_any_size_is_taken(group):
     theta = [limit, nextafter(limit, inf), -2 * limit, 1e12, 1e300]
     with mpmath.workdps(340):
         turned = [float(mpmath.mpf(angle) % (2 * mpmath.pi)) for angle in theta]
-    found, right = (evaluate(group, theta=np.array(angles), **design) for angles in (theta, turned))
+    result, right = (evaluate(group, theta=np.array(angles), **design) for angles in (theta, turned))
     for name in OUTPUTS[group]:
         if name.endswith("_wrt_alpha"):
             continue  # the law has the angle itself in it
         scale = np.abs(right[name]).max()
-        np.testing.assert_allclose(found[name], right[name], rtol=1e-12, atol=1e-13 * scale, err_msg=name)
+        np.testing.assert_allclose(result[name], right[name], rtol=1e-12, atol=1e-13 * scale, err_msg=name)
 
 
 @pytest.mark.parametrize("group", NAMES)
@@ -171,9 +171,9 @@ def test_numbers_and_integers_are_taken(group):
         "r_crank": 0,
         "r_rod": 2,
     }
-    found = evaluate(group, **point)
-    wanted = evaluate(group, **{name: float(value) for name, value in point.items()})
-    assert all(np.ndim(found[name]) == 0 and found[name] == wanted[name] for name in OUTPUTS[group])
+    result = evaluate(group, **point)
+    expected = evaluate(group, **{name: float(value) for name, value in point.items()})
+    assert all(np.ndim(result[name]) == 0 and result[name] == expected[name] for name in OUTPUTS[group])
 
 
 @pytest.mark.parametrize(
@@ -212,11 +212,11 @@ def test_a_centre_of_mass_halfway_along_its_link_has_no_dimension_of_a_grid():
     rest = {"theta": 1.0, "ec": 0.01, "omega0": 10.0, "m_rod": 2.0} | dict.fromkeys(("m_crank", "m_slider"), 1.0)
     rest |= dict.fromkeys(("I_crank", "I_rod", "alpha"), 0.1)
     AB, BC = np.array([0.1, 0.12, 0.13]), np.array([0.4, 0.5])
-    found = grid(AB=AB, BC=BC, **rest)["T_in"]
+    result = grid(AB=AB, BC=BC, **rest)["T_in"]
     for k, index in enumerate(np.ndindex(3, 2)):
         a, b = AB[index[0]], BC[index[1]]
         right = dx.evaluate("T_in", AB=a, BC=b, r_crank=a / 2, r_rod=b / 2, **rest)
-        assert found.shape == (3, 2) and found.flat[k] == pytest.approx(right, rel=1e-12)
+        assert result.shape == (3, 2) and result.flat[k] == pytest.approx(right, rel=1e-12)
 
 
 def test_a_point_is_called_from_a_loop_of_ones_own():
@@ -301,7 +301,7 @@ def test_the_text_itself_runs_as_python(branch):
     names = _text("program").outputs()
     public = list(dx.quantities())
     for point in feasible_points(25):
-        found = dict(zip(names, law(**point, **LINKS, **LOADS, branch=float(branch)), strict=True))
-        found["status"] = found["force_status"]
-        wanted = dx.evaluate(public, **point, **LINKS, **LOADS, branch=branch)
-        assert {name: found[name] for name in public} == wanted
+        result = dict(zip(names, law(**point, **LINKS, **LOADS, branch=float(branch)), strict=True))
+        result["status"] = result["force_status"]
+        expected = dx.evaluate(public, **point, **LINKS, **LOADS, branch=branch)
+        assert {name: result[name] for name in public} == expected

@@ -43,8 +43,8 @@ def torque(theta):
 @pytest.mark.parametrize("load", FUNCTIONS.values(), ids=FUNCTIONS)
 def test_a_function_takes_what_its_arguments_name_in_every_call(load):
     theta = np.linspace(0.1, 6.0, 9)
-    found = dx.evaluate("T_in", theta=theta, F_Y=load, **TURNING)
-    assert found == pytest.approx(torque(theta), rel=1e-12, abs=1e-11)
+    result = dx.evaluate("T_in", theta=theta, F_Y=load, **TURNING)
+    assert result == pytest.approx(torque(theta), rel=1e-12, abs=1e-11)
     assert dx.evaluate("T_in", theta=1.0, F_Y=load, **TURNING) == pytest.approx(torque(1.0), rel=1e-12)
     turn = np.linspace(0.0, 2.0 * np.pi, 20_001)
     assert dx.peak("T_in", F_Y=load, **TURNING)["value"] == pytest.approx(
@@ -175,10 +175,10 @@ def test_the_units_of_a_machine():
     }  # fmt: skip
     for number, loads in forces.items():
         for load in loads:
-            found = press.evaluate("T_in", theta=60, F_Y=load)
-            assert found == pytest.approx(press.evaluate("T_in", theta=60, F_Y=number), rel=1e-12)
+            result = press.evaluate("T_in", theta=60, F_Y=load)
+            assert result == pytest.approx(press.evaluate("T_in", theta=60, F_Y=number), rel=1e-12)
             held = press.replace(F_Y=load).evaluate("T_in", theta=60)
-            assert held == pytest.approx(found, rel=1e-12)
+            assert held == pytest.approx(result, rel=1e-12)
     assert str(press.spring(4, free=120)) == "<spring: stiffness = 4 N/mm, free = 120 mm>"
     assert press.damper(0.2)(1000.0) == pytest.approx(-200.0)
     turning = press.simulate(torque=lambda omega: 40 - 0.1 * omega, t_end=0.5, I_crank="0.05 kg m^2")
@@ -320,8 +320,8 @@ def test_derivatives_by_the_numbers_of_loads_are_in_the_units_of_the_machine():
     for name, size in sizes.items():
         by = f"F_Y.{name}"
         for key, of_key in (("omega_mean", 30.0 / np.pi), ("fluctuation", 1.0)):
-            found = shown["gradient"][key][by]
-            assert found == pytest.approx(turning["gradient"][key][by] * of_key * size, rel=1e-12)
+            result = shown["gradient"][key][by]
+            assert result == pytest.approx(turning["gradient"][key][by] * of_key * size, rel=1e-12)
         assert shown.units["gradient"]["omega_mean"][by] == f"rpm*{spelled[name]}".replace("*1/", "/")
         for base, of_key in (("theta", 1.0), ("omega", 30.0 / np.pi), ("t_last", 1.0), ("work", 1.0)):
             key = f"{base}_wrt_{by}"
@@ -337,9 +337,9 @@ def test_a_drag_takes_its_power():
     theta = 2.0 * np.pi * (np.arange(40_000) + 0.5) / 40_000
     V = 30.0 * slider(theta, LENGTHS, 1)[1]
     power = np.mean(200.0 * V**2 + 3.0 * np.abs(V) ** 3)
-    found = dx.drive(F_Y=dx.damper(linear=200.0, quadratic=3.0), **TURNING)
-    assert found["power_mean"] == pytest.approx(power, rel=1e-8)
-    assert found["gradient"]["power_mean"]["omega0"] == pytest.approx(
+    result = dx.drive(F_Y=dx.damper(linear=200.0, quadratic=3.0), **TURNING)
+    assert result["power_mean"] == pytest.approx(power, rel=1e-8)
+    assert result["gradient"]["power_mean"]["omega0"] == pytest.approx(
         np.mean(400.0 * V**2 + 9.0 * np.abs(V) ** 3) / 30.0, rel=1e-7
     )
 
@@ -351,11 +351,11 @@ def test_a_die_and_a_spring_jump_where_the_die_does():
     Y, slope, bend = slider(theta, LENGTHS, 1)
     pushed = np.where((REACH - Y < 0.008) & (slope > 0.0), -8e3, 0.0)
     right = (2.0 * 30.0**2 * bend - pushed + 2e3 * (Y - 0.1)) * slope
-    found = dx.peak("T_in", F_Y=load, **TURNING)
-    assert found["value"] == pytest.approx(np.abs(right).max(), rel=1e-4)
+    result = dx.peak("T_in", F_Y=load, **TURNING)
+    assert result["value"] == pytest.approx(np.abs(right).max(), rel=1e-4)
     assert dx.drive(F_Y=load, **TURNING)["torque_mean"] == pytest.approx(right[:-1].mean(), rel=1e-4)
     one, other = (dx.peak("T_in", F_Y=load, **{**TURNING, "AB": 0.04 + h})["value"] for h in (1e-6, -1e-6))
-    assert found["gradient"]["AB"] == pytest.approx((one - other) / 2e-6, rel=1e-4)
+    assert result["gradient"]["AB"] == pytest.approx((one - other) / 2e-6, rel=1e-4)
 
 
 def test_a_crankshaft_refuses_steady_states_of_loads_that_depend_on_the_speed():

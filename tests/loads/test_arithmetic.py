@@ -67,8 +67,8 @@ def test_torques_and_slopes_are_sums(kind):
     h, inner = 1e-6, theta[:40]
     ends = [torque(load, inner + s * h) for s in (1, -1)]
     smooth = np.abs(torque(load, inner + h) + torque(load, inner - h) - 2 * torque(load, inner)) < 1e-6
-    found = torque(load, inner, "T_in_wrt_theta")
-    np.testing.assert_allclose(found[smooth], ((ends[0] - ends[1]) / (2 * h))[smooth], rtol=1e-5, atol=1e-4)
+    result = torque(load, inner, "T_in_wrt_theta")
+    np.testing.assert_allclose(result[smooth], ((ends[0] - ends[1]) / (2 * h))[smooth], rtol=1e-5, atol=1e-4)
     again = pickle.loads(pickle.dumps(load))
     np.testing.assert_array_equal(torque(again, theta), torque(load, theta))
 

@@ -95,15 +95,15 @@ def test_a_function_is_called_by_the_names_of_its_arguments(torque, meant, loade
 def test_harmonics_across_jumps_are_integrals():
     """Of a force that jumps: the guide carries it where nothing has mass, and nothing else."""
     light = {"ec": 0.0, "AB": 0.04, "BC": 0.064}
-    found = dx.harmonics("F_C_Y", orders=40, F_Y=STEP, **light)
+    result = dx.harmonics("F_C_Y", orders=40, F_Y=STEP, **light)
     knots, values = [0.0, 1.0, 2.0, 4.0, TURN], [0.0, 400.0, 50.0, -20.0]  # the slider on the rod
     for n in (1, 7, 40):
         pieces = zip(pairwise(knots), values, strict=True)
         cosine = sum(v * (np.sin(n * b) - np.sin(n * a)) / n / np.pi for (a, b), v in pieces)
-        assert abs(found["cos"][n]) == pytest.approx(abs(cosine), abs=1e-11)
+        assert abs(result["cos"][n]) == pytest.approx(abs(cosine), abs=1e-11)
     squares = sum(v * v * (b - a) for (a, b), v in zip(pairwise(knots), values, strict=True)) / TURN
-    series = found["mean"] ** 2 + 0.5 * np.sum(found["amplitude"][1:] ** 2)
-    assert found["remainder"] == pytest.approx(np.sqrt(squares - series), rel=1e-9)
+    series = result["mean"] ** 2 + 0.5 * np.sum(result["amplitude"][1:] ** 2)
+    assert result["remainder"] == pytest.approx(np.sqrt(squares - series), rel=1e-9)
 
 
 def test_a_four_stroke_load_repeats_after_two_turns():

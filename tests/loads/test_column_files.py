@@ -220,9 +220,9 @@ def test_plain_numbers_of_a_file_are_in_the_units_of_the_machine(heads, tmp_path
     lines = [f"{x!r}{separator}{y!r}" for x, y in rows]
     path = written(tmp_path, "\n".join([heads, *lines]))
     press = dx.Machine(units="mm, deg, rpm", omega0=omega * 30 / math.pi, AB=AB)
-    found = press.fit(path, over={"ec": (5.0, 20.0), "BC": (100.0, 150.0)}, sigma={"a_C": 1.0})
-    assert found["value"]["ec"] == pytest.approx(ec, rel=1e-4)
-    assert found["value"]["BC"] == pytest.approx(BC, rel=1e-4)
+    result = press.fit(path, over={"ec": (5.0, 20.0), "BC": (100.0, 150.0)}, sigma={"a_C": 1.0})
+    assert result["value"]["ec"] == pytest.approx(ec, rel=1e-4)
+    assert result["value"]["BC"] == pytest.approx(BC, rel=1e-4)
 
 
 def test_many_digits_and_units_are_rounded_once():

@@ -50,9 +50,9 @@ def angles_of(truth, draw, count=5):
     )
 
 
-def near(found, right, **room):
-    assert np.shape(found) == np.shape(right)
-    assert np.ravel(found).tolist() == pytest.approx(np.ravel(right).tolist(), **room)
+def near(result, right, **room):
+    assert np.shape(result) == np.shape(right)
+    assert np.ravel(result).tolist() == pytest.approx(np.ravel(right).tolist(), **room)
 
 
 # ---- values --------------------------------------------------------------------------------------------
@@ -61,12 +61,12 @@ def near(found, right, **room):
 def evaluate(truth, draw, folder):
     theta = draw.uniform(-9.0, 9.0)
     by = ("theta", *LENGTHS, "omega0", "m_slider")
-    found = dx.evaluate(["T_in", *(f"T_in_wrt_{p}" for p in by)], theta=theta, **given(truth))
+    result = dx.evaluate(["T_in", *(f"T_in_wrt_{p}" for p in by)], theta=theta, **given(truth))
     scale = abs(truth.torque(theta)) + 1e-3
-    assert found["T_in"] == pytest.approx(truth.torque(theta), rel=1e-11, abs=1e-12 * scale)
+    assert result["T_in"] == pytest.approx(truth.torque(theta), rel=1e-11, abs=1e-12 * scale)
     for p in by:
         right = float(truth.by(p, theta))
-        assert found[f"T_in_wrt_{p}"] == pytest.approx(right, rel=1e-10, abs=1e-10 * scale), p
+        assert result[f"T_in_wrt_{p}"] == pytest.approx(right, rel=1e-10, abs=1e-10 * scale), p
     several = np.array([theta, theta + 1.0])
     near(dx.evaluate("T_in", theta=several, **given(truth)), [truth.torque(t) for t in several], **FAST)
 
@@ -82,18 +82,18 @@ def quality(truth, draw, folder):
         ):
             dx.evaluate("T_in", quality=True, **inputs)
         return
-    found = dx.evaluate("T_in", quality=True, **inputs)
+    result = dx.evaluate("T_in", quality=True, **inputs)
     with mp.workdps(DIGITS):
         exact = truth._replace(design={n: mpf(v) for n, v in truth.design.items()})
         right = exact.torque(mpf(theta), piece)
-        assert abs(found.value - right) <= found.error_bound <= 1e-8 * abs(right) + 1e-11
-    near(np.array([found.error_bound, found.value]).T, [found.error_bound, dx.evaluate("T_in", **inputs)])
+        assert abs(result.value - right) <= result.error_bound <= 1e-8 * abs(right) + 1e-11
+    near(np.array([result.error_bound, result.value]).T, [result.error_bound, dx.evaluate("T_in", **inputs)])
     for p in ("theta", *LENGTHS, "m_slider"):
-        slope = abs(float(truth.by(p, theta)) * inputs[p] / found.value)
-        room = 1e-6 + found.error_bound / abs(found.value)  # next to a dead centre the torque is rounding
-        assert found.conditions[p] == pytest.approx(slope, rel=room, abs=1e-6), p
+        slope = abs(float(truth.by(p, theta)) * inputs[p] / result.value)
+        room = 1e-6 + result.error_bound / abs(result.value)  # next to a dead centre the torque is rounding
+        assert result.conditions[p] == pytest.approx(slope, rel=room, abs=1e-6), p
     several = dx.evaluate("T_in", quality=True, **{**inputs, "theta": np.array([theta, theta + TURN])})
-    assert several.error_bound[0] == pytest.approx(found.error_bound, rel=1e-6)
+    assert several.error_bound[0] == pytest.approx(result.error_bound, rel=1e-6)
 
 
 def grids(truth, draw, folder):
@@ -170,30 +170,30 @@ def turns(truth, draw, folder):
 def design_map(truth, draw, folder):
     ecs, angle = offsets_of(truth), float(angles_of(truth, draw, 1)[0])
     names = [("rms", "T_in"), ("mean", "F_shaking_Y"), ("absmax", "T_in"), ("at", angle, "T_in"), "stroke"]
-    found = dx.design_map(names, derivatives=True, **{**given(truth), "ec": ecs})
+    result = dx.design_map(names, derivatives=True, **{**given(truth), "ec": ecs})
     designs = [at(truth, ec) for ec in ecs]
-    near(found.rms_T_in, [rms_of(t) for t in designs], **SUMS)
-    near(found.mean_F_shaking_Y, [t.mean("shaking") for t in designs], **SUMS)
-    near(found.absmax_T_in, [t.largest() for t in designs], **SUMS)
-    near(found[f"at_{angle}_T_in"], [t.torque(angle) for t in designs], **FAST)
+    near(result.rms_T_in, [rms_of(t) for t in designs], **SUMS)
+    near(result.mean_F_shaking_Y, [t.mean("shaking") for t in designs], **SUMS)
+    near(result.absmax_T_in, [t.largest() for t in designs], **SUMS)
+    near(result[f"at_{angle}_T_in"], [t.torque(angle) for t in designs], **FAST)
     slope = designs[1].moved(rms_of, "ec", 1e-5)
-    near(found.rms_T_in_wrt_ec[1], slope, rel=1e-5, abs=1e-5 * rms_of(designs[1]) / truth.design["AB"])
+    near(result.rms_T_in_wrt_ec[1], slope, rel=1e-5, abs=1e-5 * rms_of(designs[1]) / truth.design["AB"])
 
 
 def tolerance(truth, draw, folder):
     theta = float(angles_of(truth, draw, 1)[0])
     near_AB = dx.plus_minus(truth.design["AB"], 1e-9)
     inputs = {**given(truth), "AB": near_AB}
-    found = dx.tolerance("T_in", samples=16, theta=theta, **inputs)
-    assert found["gradient"]["AB"] == pytest.approx(float(truth.by("AB", theta)), rel=1e-8)
-    assert found["first_order"]["mean"] == pytest.approx(truth.torque(theta), rel=1e-9, abs=1e-12)
+    result = dx.tolerance("T_in", samples=16, theta=theta, **inputs)
+    assert result["gradient"]["AB"] == pytest.approx(float(truth.by("AB", theta)), rel=1e-8)
+    assert result["first_order"]["mean"] == pytest.approx(truth.torque(theta), rel=1e-9, abs=1e-12)
 
 
 def tolerance_of_a_peak(truth, draw, folder):
     inputs = {**given(truth), "AB": dx.plus_minus(truth.design["AB"], 1e-9)}
-    found = dx.tolerance(("absmax", "T_in"), samples=16, **inputs)
-    assert found["value"] == pytest.approx(truth.largest(), rel=1e-9)
-    assert found["gradient"]["AB"] == pytest.approx(
+    result = dx.tolerance(("absmax", "T_in"), samples=16, **inputs)
+    assert result["value"] == pytest.approx(truth.largest(), rel=1e-9)
+    assert result["gradient"]["AB"] == pytest.approx(
         dx.peak("T_in", **given(truth))["gradient"]["AB"], rel=1e-9
     )
 
@@ -211,8 +211,8 @@ def fit(truth, draw, folder):
     theta = np.sort(angles_of(truth, draw, 12))
     data = {"theta": theta, "T_in": [truth.torque(float(t)) for t in theta]}
     m = truth.design["m_slider"]
-    found = dx.fit(data, over={"m_slider": (0.5 * m, 2.0 * m)}, **without(given(truth), "m_slider"))
-    assert found["value"]["m_slider"] == pytest.approx(m, rel=1e-6)
+    result = dx.fit(data, over={"m_slider": (0.5 * m, 2.0 * m)}, **without(given(truth), "m_slider"))
+    assert result["value"]["m_slider"] == pytest.approx(m, rel=1e-6)
 
 
 # ---- motions ---------------------------------------------------------------------------------------------
@@ -258,8 +258,8 @@ def motion_by_scipy(truth, inputs, torque, speeds):
     for row, start in enumerate(speeds):
         one = dx.simulate(torque=torque, t_end=0.3, omega_start=start, **inputs)
         right = solve_ivp(rate, (0.0, 0.3), (0.4, start), method="DOP853", rtol=1e-11, atol=1e-11).y[:, -1]
-        for found in (one["theta"], several["theta"][row]):
-            assert found[-1] == pytest.approx(right[0], rel=1e-7)
+        for result in (one["theta"], several["theta"][row]):
+            assert result[-1] == pytest.approx(right[0], rel=1e-7)
         assert one["omega"][-1] == pytest.approx(right[1], rel=1e-6, abs=1e-5)
 
 
@@ -268,8 +268,8 @@ def steady(truth, draw, folder):
     truth = truth._replace(design={**truth.design, "omega0": abs(truth.design["omega0"])})
     motor = dx.over_omega([0.0, 300.0], [120.0, -330.0])
     inputs = without(given(truth), "omega0") | {"I_crank": 0.2}
-    found = dx.steady(torque=motor, **inputs)
-    start = speed = float(found["omega"][0])
+    result = dx.steady(torque=motor, **inputs)
+    start = speed = float(result["omega"][0])
     for a, b, piece in truth.arcs():
 
         def rate(theta, state, piece=piece):
@@ -281,7 +281,7 @@ def steady(truth, draw, folder):
         solved = solve_ivp(rate, (a, b), [speed], method="DOP853", rtol=1e-11, atol=1e-11)
         speed = solved.y[0, -1]
     assert speed == pytest.approx(start, rel=1e-7)
-    assert found["status"] == 0
+    assert result["status"] == 0
 
 
 # ---- machines, files, modules, and what takes no load ------------------------------------------------------
@@ -337,8 +337,8 @@ def calls_without_loads(truth, draw, folder):
     assert dx.feasibility(F_Y=load, **only) == dx.feasibility(**only)
     Y = slider(1.0, truth.design, truth.branch)[0]
     near(dx.inverse(Y=Y, F_Y=load, **lengths)["theta"], dx.inverse(Y=Y, **lengths)["theta"], **FAST)
-    wanted = {"stroke": 0.1, "time_ratio": 1.1, "BC": 0.2}
-    assert repr(dx.synthesize(**wanted, F_Y=load)) == repr(dx.synthesize(**wanted))
+    expected = {"stroke": 0.1, "time_ratio": 1.1, "BC": 0.2}
+    assert repr(dx.synthesize(**expected, F_Y=load)) == repr(dx.synthesize(**expected))
     if not callable(load):
         return
     with pytest.raises(TypeError, match=r"F_Y: function takes numbers, not a load .* load\(theta\)"):
@@ -357,10 +357,10 @@ def cells():
     for call in (*CALLS, *LONG):
         for load in LOADS:
             thorough = load == SOME[0] or (call in SHORT and load in SOME)
-            wanted = call in CALLS or thorough or cases(0, 0, 1)
+            expected = call in CALLS or thorough or cases(0, 0, 1)
             default = call in CALLS or (call in SHORT and load == SOME[0])
             marks = [] if default else [pytest.mark.thorough]
-            if wanted:
+            if expected:
                 yield pytest.param(call, *load, marks=marks, id=f"{call.__name__}-{'-'.join(load)}")
 
 

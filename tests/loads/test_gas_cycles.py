@@ -110,8 +110,8 @@ def test_the_torque_of_a_four_stroke_engine():
     with mp.workdps(50):
         for theta in (0.3, 2.2, 4.0, 7.5, 10.1, 12.3, -0.2, 13.0):
             right = true_torque(mpf(theta) % (4 * mp.pi), 200.0, int(theta % (4 * np.pi) / np.pi))
-            got = dx.evaluate("T_in", theta=theta, omega0=200.0, F_Y=FOUR_STROKE, **ENGINE, **MASSES)
-            assert got == pytest.approx(float(right), rel=1e-11)
+            result = dx.evaluate("T_in", theta=theta, omega0=200.0, F_Y=FOUR_STROKE, **ENGINE, **MASSES)
+            assert result == pytest.approx(float(right), rel=1e-11)
 
 
 def test_work_and_half_orders_of_a_four_stroke_engine():

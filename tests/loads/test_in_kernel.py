@@ -40,14 +40,14 @@ def alone(names, load, **inputs):
         dict(zip(inputs, map(float, row), strict=True)) for row in zip(*map(np.ravel, columns), strict=True)
     ]
     machine = {name: value for name, value in MACHINE.items() if name not in inputs}
-    found = [dx.evaluate(names, **row, **machine, F_Y=load) for row in rows]
-    return {name: np.reshape([one[name] for one in found], columns[0].shape) for name in names}
+    result = [dx.evaluate(names, **row, **machine, F_Y=load) for row in rows]
+    return {name: np.reshape([one[name] for one in result], columns[0].shape) for name in names}
 
 
-def assert_same(found, expected):
+def assert_same(result, expected):
     for name in expected:
         scale = np.nanmax(np.abs(expected[name]), initial=0.0)
-        np.testing.assert_allclose(found[name], expected[name], rtol=1e-11, atol=1e-13 * scale, err_msg=name)
+        np.testing.assert_allclose(result[name], expected[name], rtol=1e-11, atol=1e-13 * scale, err_msg=name)
 
 
 def test_a_key_has_the_kind_of_a_load_and_not_its_content():
@@ -72,14 +72,14 @@ def test_arrays_have_the_values_of_points_alone(name):
         theta = np.append(rng.uniform(-20.0, 20.0, 60), [0.0, np.pi, 2.0 * np.pi])
         close = 0.25 - 10.0 ** -rng.uniform(3.0, 12.0)  # AB + |ec| < BC by so much less
         for ec in (rng.uniform(-0.05, 0.05), close, np.append(rng.uniform(-0.05, 0.05, 62), close)):
-            found = dx.evaluate(NAMES, theta=theta, ec=ec, F_Y=load, **MACHINE)
-            assert_same(found, alone(NAMES, load, theta=theta, ec=ec))
+            result = dx.evaluate(NAMES, theta=theta, ec=ec, F_Y=load, **MACHINE)
+            assert_same(result, alone(NAMES, load, theta=theta, ec=ec))
             halves = [
                 dx.evaluate(NAMES, theta=t, ec=ec if np.ndim(ec) == 0 else ec[s], F_Y=load, **MACHINE)
                 for t, s in ((theta[:31], slice(31)), (theta[31:], slice(31, None)))
             ]
             for key in NAMES:
-                np.testing.assert_array_equal(np.concatenate([half[key] for half in halves]), found[key])
+                np.testing.assert_array_equal(np.concatenate([half[key] for half in halves]), result[key])
     bad = dx.evaluate(NAMES, theta=[1.0, np.nan, np.inf], ec=0.01, F_Y=load, **MACHINE)
     assert bad["status"].tolist() == [0, 4, 4]
     out = np.empty((3, 5))
@@ -94,17 +94,17 @@ def test_a_grid_has_the_values_of_its_points(name):
     """One offset is 0: at its dead centres the way of the slider turns at points of the grid."""
     axes = {"theta": AXES["theta"][::5], "ec": AXES["ec"][::10], "omega0": np.array([-20.0, 30.0])}
     machine = {n: value for n, value in MACHINE.items() if n not in axes}
-    found = dx.grid(NAMES, F_Y=LOADS[name], **axes, **machine)
+    result = dx.grid(NAMES, F_Y=LOADS[name], **axes, **machine)
     cut = dx.grid(NAMES, F_Y=LOADS[name], chunks={"ec": 3, "theta": 4, "omega0": 1}, **axes, **machine)
     for key in NAMES:
-        np.testing.assert_array_equal(cut[key], found[key], err_msg=key)
+        np.testing.assert_array_equal(cut[key], result[key], err_msg=key)
     theta, ec, omega0 = np.meshgrid(*axes.values(), indexing="ij")
     assert_same(
-        {n: found[n].values for n in NAMES}, alone(NAMES, LOADS[name], theta=theta, ec=ec, omega0=omega0)
+        {n: result[n].values for n in NAMES}, alone(NAMES, LOADS[name], theta=theta, ec=ec, omega0=omega0)
     )
     taken = dx.grid("T_in", F_Y=LOADS[name], reduce={"theta": ["max", "mean"]}, **axes, **machine)
-    np.testing.assert_allclose(taken.T_in_max, found.T_in.max("theta"), rtol=1e-12)
-    np.testing.assert_allclose(taken.T_in_mean, found.T_in.mean("theta"), rtol=1e-10, atol=1e-11)
+    np.testing.assert_allclose(taken.T_in_max, result.T_in.max("theta"), rtol=1e-12)
+    np.testing.assert_allclose(taken.T_in_mean, result.T_in.mean("theta"), rtol=1e-10, atol=1e-11)
 
 
 def test_a_load_that_a_name_does_not_hang_on_changes_nothing():

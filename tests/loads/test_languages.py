@@ -33,11 +33,11 @@ def tried():
     ]
 
 
-def compare(found, given, load):
+def compare(result, given, load):
     """The values are those of `evaluate`, to what an ulp of an angle is worth."""
     right = dx.evaluate(NAMES, **given, **FIXED, F_Y=load)
     for name in NAMES:
-        own, truth = found[name], np.asarray(right[name], float)
+        own, truth = result[name], np.asarray(right[name], float)
         np.testing.assert_array_equal(np.isnan(own), np.isnan(truth), name)
         size = np.nanmedian(np.abs(truth))
         near = np.isnan(truth) | (np.abs(own - truth) <= 2e-11 * (np.abs(truth) + size))
@@ -72,8 +72,8 @@ def test_c_has_the_digits_of_its_program_in_python(kind, tmp_path):
             continue  # those angles are the C library's
         wide = test(*(row[name] for name in own.test.inputs))[0]
         chosen, inputs = (plain, own.plain.inputs) if wide else (stable, own.stable.inputs)
-        wanted = [float(x) for x in chosen(*(row[n] for n in inputs), *arrays)[: len(NAMES)]]
-        np.testing.assert_array_equal([frozen[name][number] for name in NAMES], wanted)
+        expected = [float(x) for x in chosen(*(row[n] for n in inputs), *arrays)[: len(NAMES)]]
+        np.testing.assert_array_equal([frozen[name][number] for name in NAMES], expected)
 
 
 @pytest.mark.sampled
@@ -84,11 +84,11 @@ def test_a_table_over_theta_has_the_digits_of_the_kernels(tmp_path):
         one = load("theta", "smooth")
         given = columns(one, cases(2_000, 10_000))
         written = scene(one, outputs=["push", "push_wrt_theta", "T_in"])
-        found = compiled("c", tmp_path, written, INPUTS)([*given.values()])
+        result = compiled("c", tmp_path, written, INPUTS)([*given.values()])
         right = dx.evaluate(["push", "push_wrt_theta"], **given, **FIXED, F_Y=one)
         good = (np.abs(given["theta"]) < 9.0) & np.isfinite(given["ec"])  # whole periods are exact
         for name in right:
-            np.testing.assert_array_equal(found[name][good], right[name][good])
+            np.testing.assert_array_equal(result[name][good], right[name][good])
     finally:
         dx.undefine("push")
 
@@ -102,8 +102,8 @@ def test_jax_has_total_derivatives(tmp_path):
         module = imported(dx.compile(scene(one, outputs=["T_in"]), tmp_path / "press_jax.py", to="jax"))
         point = (5.8, 0.01, 0.04, 3.0)
         given = dict(zip(INPUTS, point, strict=True))
-        found = jax.grad(module.T_in, argnums=(0, 1, 2, 3))(*point)
-        for name, own in zip(INPUTS, found, strict=True):
+        result = jax.grad(module.T_in, argnums=(0, 1, 2, 3))(*point)
+        for name, own in zip(INPUTS, result, strict=True):
             right = dx.evaluate(f"T_in_wrt_{name}", **given, **FIXED, F_Y=one)
             assert float(own) == pytest.approx(right, rel=1e-12)
         with pytest.raises(NotImplementedError, match="no derived derivative by AB"):
@@ -116,12 +116,12 @@ def test_numba_has_points_functions_and_a_reduced_grid(tmp_path):
     written = scene(one, reduce={"theta": "absmax"}, outputs=names)
     module = imported(dx.compile(written, tmp_path / "press_kernels.py"))
     given = [*columns(one, 60).values()]
-    found = module.evaluate(*given)
+    result = module.evaluate(*given)
     for k in range(44, 60):
         point = [float(column[k]) for column in given]
         own = module.T_in(*point)
-        assert own == pytest.approx(found["T_in"][k], rel=1e-11, abs=1e-11, nan_ok=True)
-        np.testing.assert_allclose(module.point(*point)[0], found["T_in"][k], rtol=1e-11, atol=1e-11)
+        assert own == pytest.approx(result["T_in"][k], rel=1e-11, abs=1e-11, nan_ok=True)
+        np.testing.assert_allclose(module.point(*point)[0], result["T_in"][k], rtol=1e-11, atol=1e-11)
     axes = np.ix_([0.0, 0.01], [0.03, 0.04], [1.0, 2.0], [0.0, 1.0, 2.0])
     grid = dx.evaluate(
         "T_in", **dict(zip(("ec", "AB", "omega0", "theta"), axes, strict=True)), **FIXED, F_Y=one
@@ -135,11 +135,11 @@ def test_extended_is_in_c_too(tmp_path):
     one, names = load("outer both ways", "jumping"), ["T_in", "T_in_wrt_AB"]
     rows = [np.linspace(-6.0, 6.0, 9), np.linspace(-0.01, 0.01, 9), np.full(9, 0.04), np.full(9, 3.0)]
     written = scene(one, accuracy="extended", outputs=names)
-    found = compiled("c", tmp_path, written, INPUTS)(rows)
+    result = compiled("c", tmp_path, written, INPUTS)(rows)
     for k, point in enumerate(zip(*rows, strict=True)):
         here = {n: float(x) for n, x in zip(INPUTS, point, strict=True)}
         right = dx.evaluate(names, **here, **FIXED, F_Y=one, accuracy="extended")
-        np.testing.assert_allclose([found[n][k] for n in names], [*right.values()], rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose([result[n][k] for n in names], [*right.values()], rtol=1e-12, atol=1e-12)
 
 
 def test_what_a_module_cannot_hold_is_refused_by_name(tmp_path):

@@ -19,25 +19,25 @@ def test_a_bare_function_is_searched_as_a_load_over_theta():
         return 300.0 * np.sin(3.0 * theta) ** 3
 
     theta = np.linspace(0.0, 2 * np.pi, 100_001)
-    found = dx.peak("T_in", F_Y=load, **DESIGN)
+    result = dx.peak("T_in", F_Y=load, **DESIGN)
     swept = np.abs(load(theta) * dx.evaluate("Y_wrt_theta", theta=theta, **DESIGN)).max()
-    assert swept * (1 - 1e-12) <= found["value"] <= swept * (1 + 1e-7)
-    assert found["status"] == 0
+    assert swept * (1 - 1e-12) <= result["value"] <= swept * (1 + 1e-7)
+    assert result["status"] == 0
 
 
 @pytest.mark.parametrize("accuracy", ["standard", "extended"])
 def test_a_derivative_is_searched_where_no_second_slope_of_the_load_is_needed(accuracy):
     load = dx.over_theta(ANGLES, FORCES)
-    found = dx.peak("T_in_wrt_ec", F_Y=load, accuracy=accuracy, **DESIGN)
+    result = dx.peak("T_in_wrt_ec", F_Y=load, accuracy=accuracy, **DESIGN)
     theta = np.linspace(0.0, 2 * np.pi, 100_001)
     swept = np.abs(dx.evaluate("T_in_wrt_ec", theta=theta, F_Y=load, **DESIGN)).max()
-    assert swept * (1 - 1e-12) <= found["value"] <= swept * (1 + 1e-6)
+    assert swept * (1 - 1e-12) <= result["value"] <= swept * (1 + 1e-6)
     step = 1e-6
     ahead, behind = (
         dx.peak("T_in_wrt_ec", F_Y=load, **{**DESIGN, "AB": DESIGN["AB"] + side * step})["value"]
         for side in (1, -1)
     )
-    assert found["gradient"]["AB"] == pytest.approx((ahead - behind) / (2 * step), rel=1e-5)
+    assert result["gradient"]["AB"] == pytest.approx((ahead - behind) / (2 * step), rel=1e-5)
     for name, more in (("T_in_wrt_theta", load), ("T_in_wrt_AB", dx.over_Y([0.03, 0.06, 0.1], [0, -9, 5]))):
         with pytest.raises(ValueError, match=f"peak of {name}: it has the slope of F_Y"):
             dx.peak(name, F_Y=more, **DESIGN)
@@ -45,14 +45,14 @@ def test_a_derivative_is_searched_where_no_second_slope_of_the_load_is_needed(ac
 
 def test_both_limits_at_a_jump_take_part():
     load = dx.over_theta([0.0, 1.0, 2.0], [100.0, -50.0, 10.0], kind="step")
-    found = dx.peak("F_C_Y", kind="min", F_Y=load, **DESIGN)
-    assert found["value"] == -100.0
+    result = dx.peak("F_C_Y", kind="min", F_Y=load, **DESIGN)
+    assert result["value"] == -100.0
     arm = -dx.evaluate("Y_wrt_theta", theta=1.0, **DESIGN)
-    found = dx.peak("T_in", kind="max", theta=(0.5, 1.5), F_Y=load, **DESIGN)
-    assert found["value"] == pytest.approx(100.0 * arm, rel=1e-13)
-    assert found["theta"] == pytest.approx(1.0, abs=1e-14)
-    found = dx.peak("T_in", kind="min", theta=(0.5, 1.5), F_Y=load, **DESIGN)
-    assert found["value"] <= -50.0 * arm
+    result = dx.peak("T_in", kind="max", theta=(0.5, 1.5), F_Y=load, **DESIGN)
+    assert result["value"] == pytest.approx(100.0 * arm, rel=1e-13)
+    assert result["theta"] == pytest.approx(1.0, abs=1e-14)
+    result = dx.peak("T_in", kind="min", theta=(0.5, 1.5), F_Y=load, **DESIGN)
+    assert result["value"] <= -50.0 * arm
 
 
 @pytest.mark.thorough
@@ -61,17 +61,17 @@ def test_many_designs_friction_and_derivatives_that_are_not_derived():
     bodies = {"AB": 0.04, "BC": 0.064, "m_rod": 0.5, "m_slider": 0.8, "omega0": 200.0, "F_Y": load}
     theta = np.linspace(0.0, 2 * np.pi, 20_001)
     for name, more in (("N_C", {"mu": 0.1}), ("N_C_wrt_mu", {"mu": 0.1}), ("T_in", {})):
-        found = dx.peak(name, ec=ec, **bodies, **more)
+        result = dx.peak(name, ec=ec, **bodies, **more)
         scan = np.abs(dx.evaluate(name, theta=theta[:, None], ec=ec, **bodies, **more)).max(axis=0)
-        assert (found["value"] >= scan * (1 - 1e-12)).all()
-        np.testing.assert_allclose(found["value"], scan, rtol=1e-5)
+        assert (result["value"] >= scan * (1 - 1e-12)).all()
+        np.testing.assert_allclose(result["value"], scan, rtol=1e-5)
 
 
 def test_a_load_of_two_turns_is_searched_over_both():
     load = dx.over_theta([0.0, 1.0, 7.0, 8.0], [0.0, 10.0, 0.0, 500.0], kind="linear", period=4 * np.pi)
-    found = dx.peak("T_in", F_Y=load, **DESIGN)
-    assert found["theta"] > 2 * np.pi
-    assert dx.peak("T_in", F_Y=load, theta=(0.0, 2 * np.pi), **DESIGN)["value"] < found["value"]
+    result = dx.peak("T_in", F_Y=load, **DESIGN)
+    assert result["theta"] > 2 * np.pi
+    assert dx.peak("T_in", F_Y=load, theta=(0.0, 2 * np.pi), **DESIGN)["value"] < result["value"]
 
 
 def test_a_long_array_of_loads_alone_is_warned_of():

@@ -92,10 +92,10 @@ def test_a_function_and_its_derivative(in_units):
         load = dx.over_theta(pressure, derivative=slope, bore=BORE, ambient=AMBIENT, **CYCLE)
     force = -(pressure(theta) - AMBIENT) * AREA
     np.testing.assert_allclose(torque(theta, load), torque(theta, force), rtol=1e-12)
-    found = dx.evaluate("T_in_wrt_theta", theta=theta, F_Y=load, **ENGINE)
+    result = dx.evaluate("T_in_wrt_theta", theta=theta, F_Y=load, **ENGINE)
     h = 1e-6
     ends = [torque(theta + s * h, -(pressure(theta + s * h) - AMBIENT) * AREA) for s in (1, -1)]
-    np.testing.assert_allclose(found, (ends[0] - ends[1]) / (2 * h), rtol=1e-6, atol=1e-4)
+    np.testing.assert_allclose(result, (ends[0] - ends[1]) / (2 * h), rtol=1e-6, atol=1e-4)
 
 
 def test_over_the_slider_s_place(tmp_path):
@@ -149,11 +149,11 @@ def test_a_scene_reads_pressures(table, make, piston, size, tmp_path):
     (tmp_path / "indicator.csv").write_text("Y [mm],out [bar],back [bar]\n90,1,1\n170,9,2\n", "utf-8")
     path = tmp_path / "pump.toml"
     path.write_text(toml({**SCENE, "loads": {"F_Y": {**table, **piston}}}), "utf-8")
-    found = dx.scene(path).run().dataset["T_in"]
+    result = dx.scene(path).run().dataset["T_in"]
     by_hand = make(area=size, ambient=1e5)
     design = {"ec": 0.002, "AB": 0.04, "BC": 0.13, "omega0": 30.0 * math.pi}
     expected = dx.evaluate("T_in", theta=np.radians([20.0, 100.0, 250.0]), F_Y=by_hand, **design)
-    np.testing.assert_allclose(found, expected, rtol=1e-12)
+    np.testing.assert_allclose(result, expected, rtol=1e-12)
     again = dx.scene(dx.Machine.read(path).to_scene(tmp_path / "forces.toml", outputs="T_in"))
     theta = np.array([1.0, 4.0])
     forces = [dx.evaluate("T_in", theta=theta, F_Y=load, **design) for load in (again.inputs["F_Y"], by_hand)]

@@ -58,14 +58,14 @@ def test_a_scene_gives_what_the_calls_give(kind, tmp_path):
     (tmp_path / "press.csv").write_text("\n".join(f"{a}, {f}" for a, f in zip(ANGLES, FORCES, strict=True)))
     scene = dx.scene(write(tmp_path, LOADS[kind]))
     assert scene.inputs["F_Y"](1.0) == pytest.approx(expected()(1.0))
-    found = scene.run()
-    theta = found.dataset.theta.values
+    result = scene.run()
+    theta = result.dataset.theta.values
     grid = dx.grid(["T_in", "T_in_wrt_theta"], ec=[0.0, 0.01], theta=theta, F_Y=scene.inputs["F_Y"], **DESIGN)
     for name in ("T_in", "T_in_wrt_theta"):
-        np.testing.assert_array_equal(found.dataset[name], grid[name])
+        np.testing.assert_array_equal(result.dataset[name], grid[name])
     peak = dx.peak("T_in", ec=np.array([0.0, 0.01]), F_Y=scene.inputs["F_Y"], **DESIGN)
-    np.testing.assert_allclose(found.peaks[0].dataset.value, peak["value"], rtol=1e-14)
-    assert found.checks[0].agrees
+    np.testing.assert_allclose(result.peaks[0].dataset.value, peak["value"], rtol=1e-14)
+    assert result.checks[0].agrees
     assert "F_Y: over theta, " in str(dx.explain(scene))
 
 
@@ -150,9 +150,9 @@ def test_a_compiled_module_holds_the_table(tmp_path):
     assert "desaxe" not in "".join(line for line in path.read_text("utf-8").splitlines() if "import" in line)
     module = imported(path)
     right = scene.run().dataset
-    found = module.run()
+    result = module.run()
     for name in ("T_in", "T_in_wrt_theta", "status"):
-        np.testing.assert_allclose(found[name], right[name].transpose(*module.AXES), rtol=1e-12, atol=1e-11)
+        np.testing.assert_allclose(result[name], right[name].transpose(*module.AXES), rtol=1e-12, atol=1e-11)
     point = module.point(**{"theta": 1.0 - 4 * np.pi, "ec": 0.01})
     alone = dx.evaluate(["T_in", "T_in_wrt_theta"], theta=1.0, ec=0.01, F_Y=expected(), **DESIGN)
     np.testing.assert_allclose(point[:2], list(alone.values()), rtol=1e-12)
@@ -199,27 +199,27 @@ def test_a_module_of_given_states_has_its_inputs_in_one_order(tmp_path):
         })  # fmt: skip
         name = f"states_{count}"
         module = imported(dx.compile(scene, tmp_path / f"{name}.py"))
-        right, found = scene.run().dataset, module.run()
+        right, result = scene.run().dataset, module.run()
         axes = np.meshgrid(*module.AXES.values(), indexing="ij")
         points = module.evaluate(**dict(zip(module.AXES, axes, strict=True)))
         for key in ("T_in", "T_in_wrt_AB"):
-            for values in (found[key], points[key]):
+            for values in (result[key], points[key]):
                 np.testing.assert_allclose(values, right[key].transpose(*module.AXES), rtol=1e-12)
 
 
 @pytest.mark.parametrize(
-    ("table", "wanted"),
+    ("table", "expected"),
     [
         ({"over_Y": [[225, 0, 0], [475, -2, -0.05]]}, ([0, -2000], [0, -50])),
         ({"over_Y": [225, 475], "outward": [0, -2], "inward": [0, "-50 N"]}, ([0, -2000], [0, -50])),
         ({"over_Y": [[0.225, 0], [0.475, -2000]], "Y": "m", "value": "N"}, ([0, -2000], None)),
     ],
 )
-def test_plain_points_are_in_the_units_of_the_scene(table, wanted):
+def test_plain_points_are_in_the_units_of_the_scene(table, expected):
     scene = {"outputs": ["N_C"], "units": {"length": "mm", "force": "kN"}, "loads": {"F_Y": table}}
     scene |= {"mechanism": {"ec": 12, "AB": 125, "BC": 350}, "motion": {"theta": [0.0, 1.0], "omega0": 10.0}}
     load = dx.scene(scene).inputs["F_Y"]
-    plain = dx.over_Y(["225 mm", "475 mm"], *(None if part is None else part for part in wanted))
+    plain = dx.over_Y(["225 mm", "475 mm"], *(None if part is None else part for part in expected))
     assert (load.outward, load.inward) == (plain.outward, plain.inward)
 
 

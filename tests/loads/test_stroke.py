@@ -52,24 +52,24 @@ def test_any_design_has_the_forces_of_its_own_distance():
         table = sorted(draw.uniform(0.0, 2.0 * design["AB"]) for _ in range(3))
         load = dx.over_stroke(table, [draw.uniform(-900.0, 900.0) for _ in table], dead_centre=which)
         given = {**design, "theta": theta, "branch": branch, "omega0": 3.0, "m_slider": 1.0}
-        found = dx.evaluate(["T_in", "status", "Y"], F_Y=load, **given)
+        result = dx.evaluate(["T_in", "status", "Y"], F_Y=load, **given)
         with mp.workdps(40):
             distance = exact_distance(theta, design, branch, which)
         bare = dx.evaluate(
             ["T_in", "status", "Y"], F_Y=0.0 if math.isnan(distance) else load(distance), **given
         )
-        assert found["Y"] == bare["Y"] or math.isnan(found["Y"])
+        assert result["Y"] == bare["Y"] or math.isnan(result["Y"])
         if bare["status"]:
-            assert found["status"] == bare["status"]
+            assert result["status"] == bare["status"]
             continue
-        seen[found["status"]] += 1
+        seen[result["status"]] += 1
         if math.isnan(distance):
-            assert (found["status"], math.isnan(found["T_in"])) == (1, True)
+            assert (result["status"], math.isnan(result["T_in"])) == (1, True)
         else:
             scale = abs(dx.evaluate("T_in_wrt_F_Y", **given)) * 900.0
             room = 1e-13 + 2e-15 / min(b - a for a, b in pairwise(table))
-            assert found["status"] == 0
-            assert found["T_in"] == pytest.approx(bare["T_in"], rel=1e-12, abs=room * scale)
+            assert result["status"] == 0
+            assert result["T_in"] == pytest.approx(bare["T_in"], rel=1e-12, abs=room * scale)
     assert min(seen.values()) >= 10
 
 
@@ -99,11 +99,11 @@ def test_the_status_of_a_design_needs_no_angle(more):
     load = dx.over_stroke(DISTANCES, OUTWARD, INWARD, dead_centre="inner")
     ec, given = np.array([0.0, 0.024, 0.03]), {"AB": 0.04, "BC": 0.064, "omega0": 3.0, "F_Y": load, **more}
     bare = {name: value for name, value in given.items() if name not in ("F_Y", "mu")}
-    wanted = dx.evaluate("status", ec=ec, **bare)
-    np.testing.assert_array_equal(dx.evaluate("status", ec=ec, **given), wanted)
-    assert [dx.evaluate("status", ec=own, **given) for own in ec.tolist()] == wanted.tolist()
-    found = dx.grid("status", ec=ec, out=np.empty(3, np.int8), **given)["status"]
-    np.testing.assert_array_equal(found, wanted)
+    expected = dx.evaluate("status", ec=ec, **bare)
+    np.testing.assert_array_equal(dx.evaluate("status", ec=ec, **given), expected)
+    assert [dx.evaluate("status", ec=own, **given) for own in ec.tolist()] == expected.tolist()
+    result = dx.grid("status", ec=ec, out=np.empty(3, np.int8), **given)["status"]
+    np.testing.assert_array_equal(result, expected)
 
 
 # ---- jumps: constant forces, arc by arc ----------------------------------------------------------------
@@ -116,10 +116,10 @@ class Draw(jumps.Draw):
         draw, which = self.random, self.random.choice(["outer", "inner"])
         zero = (max if which == "outer" else min)(self.places, key=abs)
         stroke = float(max(self.places) - min(self.places))
-        found = {draw.choice([0.0, draw.uniform(0.0, stroke), 10 ** draw.uniform(-9, -2)]) for _ in range(4)}
-        found |= {draw.uniform(0.0, stroke), draw.uniform(0.0, stroke)}
-        values = [tuple(self.force() for _ in found) for _ in range(2)]
-        return FromCentre(tuple(sorted(found)), values[0], draw.choice([None, values[1]]), which, zero)
+        result = {draw.choice([0.0, draw.uniform(0.0, stroke), 10 ** draw.uniform(-9, -2)]) for _ in range(4)}
+        result |= {draw.uniform(0.0, stroke), draw.uniform(0.0, stroke)}
+        values = [tuple(self.force() for _ in result) for _ in range(2)]
+        return FromCentre(tuple(sorted(result)), values[0], draw.choice([None, values[1]]), which, zero)
 
 
 @pytest.fixture
@@ -142,22 +142,22 @@ def test_the_gradient_of_a_peak_at_a_jump_moves_with_the_dead_centre(digits):
         draw = Draw(60_000 + seed)
         draw.name, draw.kind, draw.theta = ("T_in", "F_C_Y")[seed % 2], "max", (0.0, 2 * math.pi)
         draw.loads = {"F_Y": draw.stroke()}
-        found = dx.peak(draw.name, kind="max", theta=draw.theta, **draw.given)
+        result = dx.peak(draw.name, kind="max", theta=draw.theta, **draw.given)
         top = draw.top[0]
         marks = [mark for end, mark in zip(top.ends, top.arc.marks, strict=True) if end == top.theta]
-        away = min(abs(float(t) - found["theta"]) for t in draw.turning)
+        away = min(abs(float(t) - result["theta"]) for t in draw.turning)
         if (
-            not found["side"]
+            not result["side"]
             or marks != ["position"]
-            or abs(found["theta"] - top.theta) > 1e-13
+            or abs(result["theta"] - top.theta) > 1e-13
             or away < 1e-3
         ):
             continue
         checked += 1
-        scale = sum(abs(found["gradient"][p]) for p in LENGTHS)
+        scale = sum(abs(result["gradient"][p]) for p in LENGTHS)
         for parameter in LENGTHS:
             right = jumps.moved(draw, top, parameter, distance)
-            assert found["gradient"][parameter] == pytest.approx(right, rel=1e-8, abs=1e-9 * scale)
+            assert result["gradient"][parameter] == pytest.approx(right, rel=1e-8, abs=1e-9 * scale)
     assert checked
 
 
@@ -196,8 +196,8 @@ def test_an_angle_given_twice_is_one_jump_in_every_call():
     bare = {n: STILL[n] for n in ("ec", "AB", "BC", "m_slider")}
     run = dx.simulate(torque=9.0, t_end=0.4, omega_start=5.0, I_crank=1.0, F_Y=twice, **bare)
     assert run["energy_residual"] < 1e-11
-    found = dx.peak("F_C_Y", kind="max", theta=(0.5, 1.5), F_Y=twice, ec=0.01, AB=0.04, BC=0.064)
-    assert found["value"] == pytest.approx(90.0)
+    result = dx.peak("F_C_Y", kind="max", theta=(0.5, 1.5), F_Y=twice, ec=0.01, AB=0.04, BC=0.064)
+    assert result["value"] == pytest.approx(90.0)
     assert twice.nodes(0.5, 1.5, smooth=True) == twice.nodes(0.5, 1.5, smooth=False) == [1.0]
 
 

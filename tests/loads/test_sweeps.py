@@ -26,10 +26,10 @@ def test_lazy_grids_and_stores_have_the_values_of_a_grid(kind, tmp_path):
     whole = dx.grid(names, **inputs)
     lazy = dx.grid(names, chunks={"theta": 7, "ec": 3}, **inputs)
     store = dx.sweep(names, store=tmp_path / "press.zarr", chunks={"theta": 10}, **inputs)
-    for found in (lazy, store):
+    for result in (lazy, store):
         for name in (*names, "status", "margin"):
-            np.testing.assert_allclose(found[name], whole[name], rtol=1e-12, atol=1e-11, err_msg=name)
-        assert found.attrs["loads"] == whole.attrs["loads"]
+            np.testing.assert_allclose(result[name], whole[name], rtol=1e-12, atol=1e-11, err_msg=name)
+        assert result.attrs["loads"] == whole.attrs["loads"]
     other = LOADS[kind] is LOADS["linear"] and dx.over_theta(
         [0.0, 1.0, 2.0, 4.0], POINTS[::-1], kind="linear"
     )
@@ -44,11 +44,11 @@ def test_lazy_grids_and_stores_have_the_values_of_a_grid(kind, tmp_path):
 def test_reductions_and_peaks_follow_the_load():
     inputs = {"theta": ANGLES, "ec": EC, "F_Y": LOADS["stroke"], **MACHINE}
     whole = dx.grid("T_in", **inputs).T_in
-    found = dx.sweep("T_in", reduce={"theta": "absmax"}, peaks="T_in", **inputs)
-    np.testing.assert_allclose(found.T_in_absmax, abs(whole).max("theta"), rtol=1e-12)
+    result = dx.sweep("T_in", reduce={"theta": "absmax"}, peaks="T_in", **inputs)
+    np.testing.assert_allclose(result.T_in_absmax, abs(whole).max("theta"), rtol=1e-12)
     peaks = dx.peak("T_in", ec=EC[:, None], F_Y=LOADS["stroke"], **MACHINE)
-    np.testing.assert_allclose(found.peak_absmax_T_in, peaks["value"], rtol=1e-12)
-    np.testing.assert_allclose(found.peak_absmax_T_in_wrt_ec, peaks["gradient"]["ec"], rtol=1e-9, atol=1e-8)
+    np.testing.assert_allclose(result.peak_absmax_T_in, peaks["value"], rtol=1e-12)
+    np.testing.assert_allclose(result.peak_absmax_T_in_wrt_ec, peaks["gradient"]["ec"], rtol=1e-9, atol=1e-8)
     spread = dx.sweep("T_in", reduce={("theta", "ec"): "p95"}, chunks={"BC": 1}, **inputs)
     np.testing.assert_allclose(spread.T_in_p95, whole.quantile(0.95, ["theta", "ec"]), rtol=1e-12)
 

@@ -170,8 +170,8 @@ def test_what_has_no_order_or_no_numbers_is_no_column(columns):
 def test_a_heading_gives_the_units_of_a_file(tmp_path):
     file = tmp_path / "press.csv"
     file.write_text("Y [mm], F_Y [kN]\n225, 0\n250, -0.1\n475, -2\n", encoding="utf-8")
-    wanted = dx.over_Y(["225 mm", "250 mm", "475 mm"], ["0 N", "-100 N", "-2000 N"])
-    assert dx.over_Y.read(file) == dx.over_Y.read(file, Y="mm", value="kN") == wanted
+    expected = dx.over_Y(["225 mm", "250 mm", "475 mm"], ["0 N", "-100 N", "-2000 N"])
+    assert dx.over_Y.read(file) == dx.over_Y.read(file, Y="mm", value="kN") == expected
     with pytest.raises(ValueError, match=r"Y = 'm', but its heading is 'Y \[mm\]'"):
         dx.over_Y.read(file, Y="m")
     file.write_text("theta [deg]; F_Y\n0; 0\n90; -500\n180; 0\n", encoding="utf-8")

@@ -47,24 +47,26 @@ def test_a_function_of_a_machine_is_in_its_units():
     def slope(angle):
         return -80.0 * np.sin(2.0 * np.radians(angle)) * np.pi / 180.0
 
-    found = PRESS.over_theta(force, slope, nodes=[180])
+    result = PRESS.over_theta(force, slope, nodes=[180])
     theta = np.linspace(0.0, 7.0, 29)
-    value, by_theta = found.both(theta)
+    value, by_theta = result.both(theta)
     np.testing.assert_allclose(value, -80e3 * np.sin(theta) ** 2, rtol=1e-13, atol=1e-9)
     np.testing.assert_allclose(by_theta, -80e3 * np.sin(2.0 * theta), rtol=1e-12, atol=1e-8)
-    assert found.angles == (np.pi,)
-    assert "the function force" in repr(found)
+    assert result.angles == (np.pi,)
+    assert "the function force" in repr(result)
 
 
 def test_files_of_a_machine(tmp_path):
     """Without units they are in those of the machine; what a heading or an argument says holds."""
     file = tmp_path / "press.csv"
     rows = "225, 0, 0\n250, -0.1, 0\n475, -2, 0.5\n"
-    wanted = dx.over_Y(["225 mm", "250 mm", "475 mm"], ["0 N", "-100 N", "-2000 N"], ["0 N", "0 N", "500 N"])
+    expected = dx.over_Y(
+        ["225 mm", "250 mm", "475 mm"], ["0 N", "-100 N", "-2000 N"], ["0 N", "0 N", "500 N"]
+    )
     file.write_text(rows, encoding="utf-8")
-    assert PRESS.over_Y.read(file) == wanted
+    assert PRESS.over_Y.read(file) == expected
     file.write_text(f"Y [mm], out [kN], in [kN]\n{rows}", encoding="utf-8")
-    assert PRESS.over_Y.read(file) == dx.over_Y.read(file) == wanted
+    assert PRESS.over_Y.read(file) == dx.over_Y.read(file) == expected
     file.write_text("0, 0\n90, -0.5\n180, 0\n", encoding="utf-8")
     turned = dx.over_theta(["0 deg", "90 deg", "180 deg"], ["0 N", "-500 N", "0 N"], "linear")
     assert PRESS.over_theta.read(file, kind="linear") == turned
@@ -132,8 +134,10 @@ def test_a_file_of_a_scene_in_other_units_says_its_own(tmp_path):
     said = r'^scene: loads\.F_Y\.over_Y = ".*press\.csv": .*, or by Y = "mm", value = "kN" '
     with pytest.raises(SceneError, match=said):
         dx.scene({**SCENE, "units": UNITS, "loads": {"F_Y": {"over_Y": file}}})
-    told = dx.scene({**SCENE, "units": UNITS, "loads": {"F_Y": {"over_Y": file, "Y": "mm", "value": "kN"}}})
-    assert told.inputs["F_Y"] == dx.over_Y(["225 mm", "475 mm"], ["0 kN", "-2 kN"])
+    message = dx.scene(
+        {**SCENE, "units": UNITS, "loads": {"F_Y": {"over_Y": file, "Y": "mm", "value": "kN"}}}
+    )
+    assert message.inputs["F_Y"] == dx.over_Y(["225 mm", "475 mm"], ["0 kN", "-2 kN"])
 
 
 @pytest.mark.parametrize("over", ["over_theta", "over_Y", "over_stroke"])
@@ -143,16 +147,16 @@ def test_the_units_that_are_proposed_for_a_file_serve(over, tmp_path):
     load = {over: str(file), "kind": "linear"} | ({"dead_centre": "outer"} if over == "over_stroke" else {})
     scene = {**SCENE, "units": UNITS, "loads": {"F_Y": load}}
     file.write_text("place, force, back\n" + lines, encoding="utf-8")
-    with pytest.raises(SceneError, match=r"die\.csv") as told:
+    with pytest.raises(SceneError, match=r"die\.csv") as message:
         dx.scene(scene)
-    assert str(told.value).startswith(f"scene: loads.F_Y.{over} = ")
+    assert str(message.value).startswith(f"scene: loads.F_Y.{over} = ")
     place = "deg" if over == "over_theta" else "mm"
     file.write_text(f"place [{place}], force [kN], back [kN]\n{lines}", encoding="utf-8")
-    wanted = dx.scene(scene).inputs["F_Y"]
+    expected = dx.scene(scene).inputs["F_Y"]
     file.write_text("place, force, back\n" + lines, encoding="utf-8")
-    keys = str(told.value).split(" or by ")[1].removesuffix(" beside the file").split(", ")
+    keys = str(message.value).split(" or by ")[1].removesuffix(" beside the file").split(", ")
     load |= {key: unit.strip('"') for key, unit in (one.split(" = ") for one in keys)}
-    assert dx.scene(scene).inputs["F_Y"] == wanted
+    assert dx.scene(scene).inputs["F_Y"] == expected
 
 
 def test_a_load_in_the_units_of_nothing_names_its_input_once():
@@ -178,11 +182,11 @@ def test_a_load_says_the_ranges_of_both_ways():
 def test_titles_show_loads_in_the_units_of_the_machine(inward):
     load = dx.over_Y(["200 mm", "300 mm"], ["-80 kN", "-1e-3 kN"], inward and ["0 N", "400 N"], kind="linear")
     machine = PRESS.replace(F_Y=load, F_X=PRESS.over_theta([0, 180], [1e-3, 2e3], "step"))
-    found = machine.grid("T_in", theta=np.linspace(0.0, 360.0, 5))
+    result = machine.grid("T_in", theta=np.linspace(0.0, 360.0, 5))
     ways = "-80 to -0.001 kN" + ("" if inward is None else ", inward 0 to 0.4 kN")
-    assert f"F_Y: <load over Y: 2 points, linear, {ways}>" in found.attrs["loads"]
-    assert "F_X: <load over theta: 2 points, step, 0.001 to 2000 kN>" in found.attrs["loads"]
-    title = dx.plot.curves(found, "T_in")[0].axes.get_title(loc="left").replace("\u00a0", " ")
+    assert f"F_Y: <load over Y: 2 points, linear, {ways}>" in result.attrs["loads"]
+    assert "F_X: <load over theta: 2 points, step, 0.001 to 2000 kN>" in result.attrs["loads"]
+    title = dx.plot.curves(result, "T_in")[0].axes.get_title(loc="left").replace("\u00a0", " ")
     assert f"F_Y over Y, {ways}" in " ".join(title.split())
     assert "F_X over theta, 0.001 to 2000 kN" in " ".join(title.split())
     assert " N" not in title

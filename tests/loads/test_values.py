@@ -74,12 +74,12 @@ LOADS = {
 def solved(load, theta, **changed):
     """The forces of the free bodies under a load of that instant, and what the frame feels of them."""
     motion = loop.Motion(theta=theta, **DESIGN)._replace(**changed)
-    found = free_bodies.solve(motion, free_bodies.Bodies(F_Y=load(motion), **BODIES))
+    result = free_bodies.solve(motion, free_bodies.Bodies(F_Y=load(motion), **BODIES))
     shaking = {
-        "F_shaking_Y": -found["F_A_Y"],
-        "M_shaking": -found["T_in"] - loop.slider(motion)[1] * found["N_C"],
+        "F_shaking_Y": -result["F_A_Y"],
+        "M_shaking": -result["T_in"] - loop.slider(motion)[1] * result["N_C"],
     }
-    return found | shaking
+    return result | shaking
 
 
 @pytest.mark.parametrize("kind", LOADS)
@@ -89,15 +89,15 @@ def test_forces_and_total_derivatives_are_those_of_the_free_bodies(kind, theta):
     felt = ("T_in", "N_C", "F_shaking_Y", "M_shaking")  # partial derivatives of F_shaking_Y have no load
     inputs = {"theta": theta, **{n: DESIGN[n] for n in LENGTHS}}
     names = [f"{name}{by}" for name in felt for by in ("", *(f"_wrt_{p}" for p in inputs))]
-    found = dx.evaluate(names, theta=theta, F_Y=load, **DESIGN, **BODIES)
+    result = dx.evaluate(names, theta=theta, F_Y=load, **DESIGN, **BODIES)
     with mp.workdps(2 * loop.DIGITS):
         right, h = solved(at, theta), mpf(10) ** -12
         for p, value in inputs.items():
             ahead, behind = (solved(at, **{"theta": theta, p: mpf(value) + s * h}) for s in (1, -1))
             for name in felt:
                 slope = (ahead[name] - behind[name]) / (2 * h)
-                assert abs(found[name] - right[name]) <= 1e-12 * abs(right[name])
-                assert abs(found[f"{name}_wrt_{p}"] - slope) <= 1e-11 * abs(slope)
+                assert abs(result[name] - right[name]) <= 1e-12 * abs(right[name])
+                assert abs(result[f"{name}_wrt_{p}"] - slope) <= 1e-11 * abs(slope)
 
 
 def test_a_labelled_array_is_a_load_over_theta():
@@ -142,8 +142,8 @@ def test_functions_of_numbers_and_without_derivative():
 
     fixed = {**DESIGN, **BODIES}
     angles = np.array([1.0, 2.0])
-    found = dx.evaluate("T_in", theta=angles, F_Y=lambda theta: 50.0 * math.sin(theta), **fixed)
-    np.testing.assert_allclose(found, dx.evaluate("T_in", theta=angles, F_Y=50 * np.sin(angles), **fixed))
+    result = dx.evaluate("T_in", theta=angles, F_Y=lambda theta: 50.0 * math.sin(theta), **fixed)
+    np.testing.assert_allclose(result, dx.evaluate("T_in", theta=angles, F_Y=50 * np.sin(angles), **fixed))
     assert dx.evaluate("V_C_wrt_theta", theta=1.0, F_Y=lambda theta: 2.0 * np.sin(theta), **fixed)
     with pytest.raises(ValueError, match="T_in_wrt_theta: it needs the slope of F_Y"):
         dx.evaluate("T_in_wrt_theta", theta=1.0, F_Y=lambda theta: 2.0 * np.sin(theta), **fixed)
@@ -160,9 +160,9 @@ def test_functions_of_numbers_and_without_derivative():
 def test_an_infeasible_angle_keeps_its_status():
     load = dx.over_Y([0.0, 1.0], [1.0, 2.0])
     short = {"ec": 0.0, "AB": 0.3, "BC": 0.1, "omega0": 1.0, "F_Y": load}
-    found = dx.evaluate(["T_in", "status"], theta=np.array([0.1, 1.5]), **short)
-    assert found["status"].tolist() == [0, 1]
-    assert np.isnan(found["T_in"]).tolist() == [False, True]
+    result = dx.evaluate(["T_in", "status"], theta=np.array([0.1, 1.5]), **short)
+    assert result["status"].tolist() == [0, 1]
+    assert np.isnan(result["T_in"]).tolist() == [False, True]
 
 
 def test_loads_compare_by_content_and_travel_by_pickle():
@@ -190,11 +190,11 @@ def test_the_double_before_the_first_angle_of_a_table_ends_the_last_piece(kind):
 @pytest.mark.parametrize("kind", LOADS)
 def test_what_a_whole_design_has_needs_no_angle_under_friction_and_loads(kind):
     machine = {"AB": 0.04, "BC": 0.064, "mu": 0.1, "F_Y": LOADS[kind][0]()}
-    found = dx.grid("stroke", ec=[0.0, 0.01, 0.05], **machine)
-    assert found.status.values.tolist() == [0, 0, 1]
+    result = dx.grid("stroke", ec=[0.0, 0.01, 0.05], **machine)
+    assert result.status.values.tolist() == [0, 0, 1]
     one = dx.evaluate(["stroke", "margin", "status"], ec=0.01, **machine)
     assert one["stroke"] == pytest.approx(np.sqrt(0.104**2 - 1e-4) - np.sqrt(0.024**2 - 1e-4), rel=1e-14)
     assert one["status"] == 0
-    assert found.margin[1] == one["margin"]
+    assert result.margin[1] == one["margin"]
     with pytest.raises(TypeError, match="theta, over which F_Y varies, is missing"):
         dx.evaluate(["stroke", "T_in"], ec=0.01, **machine)

@@ -87,8 +87,8 @@ def around(x: Any, y: Any, shape: str) -> Pieces:
     if shape == "smooth":
         rows = [list(column[::-1]) for column in CubicSpline(ends, values, bc_type="periodic").c.T]
         return Pieces(list(x), [rows[-1], *rows])
-    found = held(ends, values, "step" if shape == "jumping" else shape)
-    return Pieces(list(x), found.rows[:-1])
+    result = held(ends, values, "step" if shape == "jumping" else shape)
+    return Pieces(list(x), result.rows[:-1])
 
 
 def force_of(place: str, shape: str, design: dict, branch: int, draw: Any) -> Force:

@@ -92,11 +92,11 @@ def of_machine(name):
 def test_numbers_have_the_units_that_the_answer_says(name):
     plain, shown = in_si(name), of_machine(name)
     wanted = {key: (value, unit) for key, value, unit in leaves(plain, plain.units)}
-    found = {key: (value, unit) for key, value, unit in leaves(shown, shown.units)}
+    result = {key: (value, unit) for key, value, unit in leaves(shown, shown.units)}
     assert wanted
-    assert found.keys() == wanted.keys()
+    assert result.keys() == wanted.keys()
     changed = 0
-    for key, (value, unit) in found.items():
+    for key, (value, unit) in result.items():
         expected, base = wanted[key]
         changed += unit != base
         scale = float(registry().Quantity(1.0, unit).to(base).magnitude)
@@ -107,19 +107,19 @@ def test_numbers_have_the_units_that_the_answer_says(name):
 
 @pytest.mark.parametrize("name", ["peak", "optimize", "drive", "tolerance"])
 def test_answers_keep_their_units_in_a_pickle(name):
-    found = in_si(name)
-    assert pickle.loads(pickle.dumps(found)).units == found.units
-    assert all(isinstance(unit, (str, Mapping)) for unit in found.units.values())
+    result = in_si(name)
+    assert pickle.loads(pickle.dumps(result)).units == result.units
+    assert all(isinstance(unit, (str, Mapping)) for unit in result.units.values())
 
 
 def test_an_objective_of_ones_own_has_no_unit_and_can_be_pickled():
     def twice(design):
         return 2.0 * design["ec"], {"ec": 2.0}
 
-    found = dx.optimize(maximize=twice, over={"ec": (0.0, 0.01)}, AB=0.05, BC=0.2)
-    assert found.units["value"] == "1"
-    assert found.units["ec"] == "m"
-    assert pickle.loads(pickle.dumps(found)) == found
+    result = dx.optimize(maximize=twice, over={"ec": (0.0, 0.01)}, AB=0.05, BC=0.2)
+    assert result.units["value"] == "1"
+    assert result.units["ec"] == "m"
+    assert pickle.loads(pickle.dumps(result)) == result
 
 
 def test_messages_are_in_the_units_of_the_machine():
@@ -136,9 +136,9 @@ def test_messages_are_in_the_units_of_the_machine():
 def test_titles_and_attributes_have_the_loads_in_the_units_of_the_machine():
     press = dx.Machine(**SI).replace(units="kN, mm")
     press = press.replace(F_Y=press.over_theta(["0 deg", "30 deg", "180 deg"], [-3, 0, 0], kind="step"))
-    found = press.grid("T_in", theta=[0.0, 1.0])
-    assert found.attrs["loads"] == "F_Y: <load over theta: 3 points, step, -3 to 0 kN>"
-    assert "F_Y over theta, -3 to 0 kN" in title_of(found, ["T_in"]).replace("\u00a0", " ")
+    result = press.grid("T_in", theta=[0.0, 1.0])
+    assert result.attrs["loads"] == "F_Y: <load over theta: 3 points, step, -3 to 0 kN>"
+    assert "F_Y over theta, -3 to 0 kN" in title_of(result, ["T_in"]).replace("\u00a0", " ")
     words = "over theta, -3 to 0 kN"
     assert words in repr(press)
     assert words in str(press.explain("T_in", theta=[0.0, 1.0]))

@@ -38,8 +38,8 @@ def test_fits():
     variance = np.diag(shown["covariance"])
     np.testing.assert_allclose(np.sqrt(variance), list(shown["std_error"].values()), rtol=1e-12)
     value, error = shown.predict(theta=60)["Y"]
-    wanted, own = plain.predict(theta=math.pi / 3)["Y"]
-    np.testing.assert_allclose([value, error], [1e3 * wanted, 1e3 * own], rtol=1e-6)
+    expected, own = plain.predict(theta=math.pi / 3)["Y"]
+    np.testing.assert_allclose([value, error], [1e3 * expected, 1e3 * own], rtol=1e-6)
     assert "AB [mm]" in shown.report()
     assert "AB [m]" in plain.report()
     axes = shown.plot().axes
@@ -97,8 +97,8 @@ def test_every_option_of_compile_is_one_of_the_machine(tmp_path):
 def test_a_synthesis_keeps_what_the_machine_has():
     """The rod; the stroke or the time ratio that is not asked for."""
     own = dx.events(ec=0.01, AB=0.05, BC=0.2)
-    found = PRESS.synthesize(time_ratio=1.2)
-    assert found == dx.synthesize(stroke=own["stroke"], time_ratio=1.2, BC=0.2)
+    result = PRESS.synthesize(time_ratio=1.2)
+    assert result == dx.synthesize(stroke=own["stroke"], time_ratio=1.2, BC=0.2)
     assert PRESS.synthesize()["solutions"][0]["AB"] == pytest.approx(0.05, rel=1e-12)
     assert IN_MM.synthesize(stroke=80)["solutions"][0]["AB"] == pytest.approx(
         1e3 * dx.synthesize(stroke=0.08, time_ratio=own["time_ratio"], BC=0.2)["solutions"][0]["AB"]

@@ -26,13 +26,13 @@ def numbers(path, sheet="values"):
 
 
 def test_a_grid_in_its_own_units_with_designs_that_do_not_turn(tmp_path):
-    found = LOADED.grid(["T_in", "a_C"], theta=[0, 30, 60], ec=[0, 180])
-    book = sheets(dx.to_excel(found, tmp_path / "new" / "a.xlsx"))
+    result = LOADED.grid(["T_in", "a_C"], theta=[0, 30, 60], ec=[0, 180])
+    book = sheets(dx.to_excel(result, tmp_path / "new" / "a.xlsx"))
     head, *rows = book["values"]
     assert head == ["theta [deg]", "ec [mm]", "T_in [N*m]", "a_C [mm/s^2]", "status", "margin [mm]"]
     assert len(rows) == 6
     for (theta, ec), row in zip([(t, e) for t in (0, 30, 60) for e in (0, 180)], rows, strict=True):
-        one = found.sel(theta=theta, ec=ec)
+        one = result.sel(theta=theta, ec=ec)
         assert row[:2] == [theta, ec]
         assert row[4] == int(one.status)
         value = float(one.T_in)
@@ -41,34 +41,36 @@ def test_a_grid_in_its_own_units_with_designs_that_do_not_turn(tmp_path):
     about = {row[1]: row[2:4] for row in book["about"]}
     assert about["AB"] == [50, "mm"]
     assert "load over theta: 3 points, step" in about["loads"][0]
-    assert sheets(dx.to_excel(found.T_in, tmp_path / "b.xlsx"))["values"][0][-1] == "T_in [N*m]"
+    assert sheets(dx.to_excel(result.T_in, tmp_path / "b.xlsx"))["values"][0][-1] == "T_in [N*m]"
 
 
 def test_answers_in_the_units_of_a_machine(tmp_path):
     peak = LOADED.peak("T_in")
-    found = numbers(dx.to_excel(peak, tmp_path / "a.xlsx"))
-    assert found["value"] == (pytest.approx(peak["value"]), "N*m")
-    assert found["theta"] == (30, "deg")
-    assert found["side"] == (-1, None)
-    assert found["gradient.ec"] == (pytest.approx(peak["gradient"]["ec"]), "N*m/mm")
+    result = numbers(dx.to_excel(peak, tmp_path / "a.xlsx"))
+    assert result["value"] == (pytest.approx(peak["value"]), "N*m")
+    assert result["theta"] == (30, "deg")
+    assert result["side"] == (-1, None)
+    assert result["gradient.ec"] == (pytest.approx(peak["gradient"]["ec"]), "N*m/mm")
     drive = numbers(dx.to_excel(LOADED.drive(), tmp_path / "b.xlsx"))
     assert drive["torque_peak"][1] == "N*m"
     assert drive["ec"] == (LOADED.in_units()["ec"], "mm")
     assert drive["gradient.torque_rms.ec"][1] == "N*m/mm"
     spread = LOADED.tolerance("a_C", theta=60, ec="10 +- 0.1", samples=100)
-    found = numbers(dx.to_excel(spread, tmp_path / "c.xlsx"))
-    assert found["first_order.std"] == (pytest.approx(spread["first_order"]["std"]), "mm/s^2")
+    result = numbers(dx.to_excel(spread, tmp_path / "c.xlsx"))
+    assert result["first_order.std"] == (pytest.approx(spread["first_order"]["std"]), "mm/s^2")
     head, *rows = sheets(dx.to_excel(PRESS.evaluate(["a_C"], theta=[0, 90]), tmp_path / "d.xlsx"))["values"]
     assert (head, len(rows)) == (["a_C [mm/s^2]"], 2)
 
 
 def test_answers_of_functions_are_in_si_units(tmp_path):
     theta = np.linspace(0, 1, 3)
-    found = dx.evaluate(["a_C", "V_C"], theta=theta, ec=0.01, AB=0.05, BC=0.2, omega0=3)
-    path = dx.to_excel(found, tmp_path / "a.xlsx")
+    result = dx.evaluate(["a_C", "V_C"], theta=theta, ec=0.01, AB=0.05, BC=0.2, omega0=3)
+    path = dx.to_excel(result, tmp_path / "a.xlsx")
     head, *rows = sheets(path)["values"]
     assert head == ["theta [rad]", "a_C [m/s^2]", "V_C [m/s]"]
-    np.testing.assert_allclose(np.array(rows, float), np.array([theta, found["a_C"], found["V_C"]]).T, 1e-14)
+    np.testing.assert_allclose(
+        np.array(rows, float), np.array([theta, result["a_C"], result["V_C"]]).T, 1e-14
+    )
     assert numbers(path, "numbers")["omega0"] == (3, "rad/s")
     peak = dx.to_excel(dx.peak("a_C", ec=[0.0, 0.01], AB=0.05, BC=0.2, omega0=3), tmp_path / "b.xlsx")
     assert "gradient.BC [1/s^2]" in sheets(peak)["values"][0]

@@ -35,42 +35,42 @@ CALLS = {
 }
 
 
-def same(found, wanted):
-    if isinstance(wanted, dict):
-        assert type(found) is type(wanted)
-        assert list(found) == list(wanted)
-        for key in wanted:
+def same(result, expected):
+    if isinstance(expected, dict):
+        assert type(result) is type(expected)
+        assert list(result) == list(expected)
+        for key in expected:
             if key != "solution":
-                same(found[key], wanted[key])
-    elif hasattr(wanted, "identical"):
-        assert found.attrs == wanted.attrs
-        assert list(found.variables) == list(wanted.variables)
-        for name, array in wanted.variables.items():
-            assert (found[name].dims, str(found[name].attrs)) == (array.dims, str(array.attrs))
-            np.testing.assert_allclose(found[name], array, rtol=1e-9, atol=1e-9)
-    elif wanted is None or isinstance(wanted, str):
-        assert found == wanted
-    elif isinstance(wanted, (list, tuple)):
-        assert len(found) == len(wanted)
-        for one, other in zip(found, wanted, strict=True):
+                same(result[key], expected[key])
+    elif hasattr(expected, "identical"):
+        assert result.attrs == expected.attrs
+        assert list(result.variables) == list(expected.variables)
+        for name, array in expected.variables.items():
+            assert (result[name].dims, str(result[name].attrs)) == (array.dims, str(array.attrs))
+            np.testing.assert_allclose(result[name], array, rtol=1e-9, atol=1e-9)
+    elif expected is None or isinstance(expected, str):
+        assert result == expected
+    elif isinstance(expected, (list, tuple)):
+        assert len(result) == len(expected)
+        for one, other in zip(result, expected, strict=True):
             same(one, other)
     else:
-        np.testing.assert_allclose(found, wanted, rtol=1e-9, atol=1e-9)  # plain Python or compiled
+        np.testing.assert_allclose(result, expected, rtol=1e-9, atol=1e-9)  # plain Python or compiled
 
 
 @pytest.mark.parametrize("name", CALLS)
 def test_a_method_is_its_function(name):
     function, given = getattr(dx, name), CALLS[name]
-    found = getattr(PRESS, name)(**given)
+    result = getattr(PRESS, name)(**given)
     takes = inspect.signature(function).parameters
     anything = any(p.kind is p.VAR_KEYWORD for p in takes.values())
     free = {**given, **given.get("over", {})}
     inputs = {k: v for k, v in INPUTS.items() if k not in free and (anything or k in takes)}
     inputs = {} if name == "synthesize" else inputs
     inputs |= {"omega_start": INPUTS["omega0"]} if name == "simulate" else {}
-    same(found, function(**given, **inputs))
+    same(result, function(**given, **inputs))
     if name not in ("optimize", "synthesize"):  # a machine can be unpacked everywhere
-        same(found, function(**given, **{k: v for k, v in PRESS.items() if k not in given}))
+        same(result, function(**given, **{k: v for k, v in PRESS.items() if k not in given}))
 
 
 def test_signatures_and_documentation_are_those_of_the_functions():
@@ -127,14 +127,14 @@ def test_it_is_a_frozen_mapping():
 def test_its_arrays_stay_as_they_are(again):
     """Nothing changes the hash of a machine, where it comes from another process neither."""
     first = dx.Machine(ec=[0.0, 0.01], AB=0.1, BC=0.3, omega0=np.array([1.0, 2.0]))
-    found = again(first.replace(m_slider=[1.0, 2.0]))
+    result = again(first.replace(m_slider=[1.0, 2.0]))
     for machine in (
         first,
-        found,
-        again(found),
-        found.replace(AB=0.11),
-        dx.Machine(found),
-        dx.Machine(dict(found)),
+        result,
+        again(result),
+        result.replace(AB=0.11),
+        dx.Machine(result),
+        dx.Machine(dict(result)),
     ):
         before = hash(machine)
         for name in ("ec", "omega0"):
@@ -237,9 +237,9 @@ def test_a_scene_of_a_machine_takes_other_inputs_as_a_grid_does(tmp_path):
         assert press.scene("Y", **more) == press.replace(**more).scene("Y")
         press.to_scene(tmp_path / "press.toml", "Y", **more)
         assert dx.scene(tmp_path / "press.toml") == press.scene("Y", **more)
-    found = press.scene("Y", ec=[0, 5], theta=[0.0, 1.0]).run().dataset
+    result = press.scene("Y", ec=[0, 5], theta=[0.0, 1.0]).run().dataset
     grid = press.grid("Y", ec=[0, 5], theta=[0.0, 1.0]).Y
-    np.testing.assert_array_equal(found.Y, grid.transpose(*found.Y.dims))
+    np.testing.assert_array_equal(result.Y, grid.transpose(*result.Y.dims))
     with pytest.raises(ValueError, match="AB = -1"):
         press.scene("Y", AB=-1)
 

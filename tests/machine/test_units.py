@@ -81,10 +81,10 @@ def test_a_motion_starts_at_the_speed_of_the_machine():
     how = {"torque": 50.0, "t_end": 0.02, "I_crank": 0.5}
     for machine in (PRESS, dx.Machine(PRESS, units="mm, deg, rad/s"), dx.Machine(SI)):
         speed = machine.in_units()["omega0"]
-        found = machine.simulate(**how)
-        assert found["omega"][0] == pytest.approx(speed, rel=1e-12)
-        assert found["theta"][0] == 0.0
-        np.testing.assert_array_equal(found["omega"], machine.simulate(omega_start=speed, **how)["omega"])
+        result = machine.simulate(**how)
+        assert result["omega"][0] == pytest.approx(speed, rel=1e-12)
+        assert result["theta"][0] == 0.0
+        np.testing.assert_array_equal(result["omega"], machine.simulate(omega_start=speed, **how)["omega"])
         assert machine.simulate(omega_start=0.0, **how)["omega"][0] == 0.0
     state = dx.Machine({k: v for k, v in SI.items() if k != "omega0"}, omega=7.0)
     assert state.simulate(**how)["omega"][0] == pytest.approx(7.0, rel=1e-12)
@@ -105,16 +105,16 @@ def test_other_names_of_the_start_are_refused_with_the_right_one(given, meant):
 
 
 def test_labelled_results_carry_their_units():
-    found = PRESS.grid(["a_C", "a_C_wrt_ec"], theta=[0, 60, 90], ec=[0, 10])
-    assert found.theta.values.tolist() == [0.0, 60.0, 90.0]
-    assert found.ec.values.tolist() == [0.0, 10.0]
-    assert found.theta.units == "deg"
-    assert float(found.AB) == 50.0
-    assert found.AB.units == "mm"
-    assert found.a_C.units == "mm/s^2"
-    assert found.margin.units == "mm"
-    assert found.status.dtype == np.int8
-    assert float(found.a_C[1, 1]) == pytest.approx(PRESS.evaluate("a_C", theta=60), rel=1e-12)
+    result = PRESS.grid(["a_C", "a_C_wrt_ec"], theta=[0, 60, 90], ec=[0, 10])
+    assert result.theta.values.tolist() == [0.0, 60.0, 90.0]
+    assert result.ec.values.tolist() == [0.0, 10.0]
+    assert result.theta.units == "deg"
+    assert float(result.AB) == 50.0
+    assert result.AB.units == "mm"
+    assert result.a_C.units == "mm/s^2"
+    assert result.margin.units == "mm"
+    assert result.status.dtype == np.int8
+    assert float(result.a_C[1, 1]) == pytest.approx(PRESS.evaluate("a_C", theta=60), rel=1e-12)
     reduced = PRESS.grid("a_C", theta=np.arange(360.0), ec=[0, 10], reduce={"theta": "absmax"})
     assert reduced.a_C_absmax.units == "mm/s^2"
     assert reduced.a_C_absmax_theta.units == "deg"
@@ -141,11 +141,11 @@ def test_labelled_results_carry_their_units():
 def test_sweeps(tmp_path):
     press = dx.Machine(AB=50, omega0=300, units="mm, deg, rpm")
     axes = {"theta": [0, 60, 90], "ec": [0, 160], "BC": [200, 210]}
-    found = press.sweep(["V_C", "a_C"], store=tmp_path / "press.zarr", **axes)
-    assert found.a_C.units == "mm/s^2"
-    wanted = press.grid(["V_C", "a_C"], **axes)
-    np.testing.assert_allclose(found.a_C, wanted.a_C, rtol=1e-12)
-    assert found.theta.values.tolist() == [0.0, 60.0, 90.0]
+    result = press.sweep(["V_C", "a_C"], store=tmp_path / "press.zarr", **axes)
+    assert result.a_C.units == "mm/s^2"
+    expected = press.grid(["V_C", "a_C"], **axes)
+    np.testing.assert_allclose(result.a_C, expected.a_C, rtol=1e-12)
+    assert result.theta.values.tolist() == [0.0, 60.0, 90.0]
 
 
 def test_pint_quantities():
@@ -313,11 +313,11 @@ def test_a_force_that_no_rod_carries_is_told(force):
         "over_Y": press.over_Y([30, 100], [-80e3, 0]),
         "over_theta": press.over_theta([0, 3], [10, -80e3], kind="step"),
     }
-    told = "almost surely a slip: F_Y up to 80000 kN on a rod of 64 mm: half as thick .* carry 78 GPa$"
-    with pytest.warns(dx.UnitWarning, match=told) as caught:
+    message = "almost surely a slip: F_Y up to 80000 kN on a rod of 64 mm: half as thick .* carry 78 GPa$"
+    with pytest.warns(dx.UnitWarning, match=message) as caught:
         press.replace(F_Y=loads[force])
     assert caught[0].filename == __file__
-    with pytest.warns(dx.UnitWarning, match=told):
+    with pytest.warns(dx.UnitWarning, match=message):
         dx.Machine(**FORGE, F_Y=loads[force])
     if force == "number":
         data = {"outputs": ["T_in"], "units": "mm, kN", "mechanism": {"ec": 0, "AB": 40, "BC": 64}}
@@ -352,8 +352,8 @@ def test_pictures_of_labelled_results_in_other_units(tmp_path):
     top = PRESS.peak("T_in")
     bars = PRESS.plot.tornado("T_in", {"ec": 1, "AB": "0.5 mm"})
     widths = sorted(abs(bar.get_width()) for bar in bars[0])
-    wanted = sorted([abs(top["gradient"]["ec"]), 0.5 * abs(top["gradient"]["AB"])])
-    assert widths == pytest.approx(wanted, rel=1e-9)
+    expected = sorted([abs(top["gradient"]["ec"]), 0.5 * abs(top["gradient"]["AB"])])
+    assert widths == pytest.approx(expected, rel=1e-9)
     assert "ec ± 1 mm" in [label.get_text() for label in bars[0][0].axes.get_yticklabels()]
     (bar,) = dx.plot.tornado(PRESS.peak("a_C"), {"ec": "0.1 mm"}, name="a_C")[0]
     assert abs(bar.get_width()) == pytest.approx(0.1 * abs(PRESS.peak("a_C")["gradient"]["ec"]), rel=1e-9)
@@ -367,8 +367,8 @@ def test_pictures_of_labelled_results_in_other_units(tmp_path):
 
 
 def test_words_of_results_in_units():
-    found = PRESS.optimize(maximize="stroke", over={"ec": (0, 60)}, keep={"margin": (100, None)})
-    assert "ec = 50 mm" in found["message"]
+    result = PRESS.optimize(maximize="stroke", over={"ec": (0, 60)}, keep={"margin": (100, None)})
+    assert "ec = 50 mm" in result["message"]
     with pytest.raises(TypeError, match=r"ec = .*one number.*\[desaxe.drive\(ec=value, ...\) for value in"):
         PRESS.drive(ec=[0, 10])
     labelled = PRESS.grid("T_in", theta=[0, 60], as_quantity=True)
@@ -426,9 +426,9 @@ def test_a_list_where_one_number_is_wanted_is_told_in_the_units_of_the_machine()
 @pytest.mark.parametrize("kind", [np.array, lambda texts: np.array(texts, dtype=object)])
 def test_an_array_of_texts_is_in_the_units_that_they_name(kind):
     machine = dx.Machine(units="mm, deg, rpm", ec=10, AB=40, BC=164, omega0=60)
-    wanted = machine.evaluate("V_C", theta=[0.0, 60.0, 90.0])
-    found = machine.evaluate("V_C", theta=kind(["0 deg", f"{math.pi / 3!r} rad", "90"]))
-    np.testing.assert_allclose(found, wanted, rtol=1e-13)
+    expected = machine.evaluate("V_C", theta=[0.0, 60.0, 90.0])
+    result = machine.evaluate("V_C", theta=kind(["0 deg", f"{math.pi / 3!r} rad", "90"]))
+    np.testing.assert_allclose(result, expected, rtol=1e-13)
     with pytest.raises(TypeError, match=r"^theta: expected real numbers, got an array of object"):
         machine.evaluate("V_C", theta=pd.Series(["0 deg", "90"]))
 

@@ -44,8 +44,8 @@ def test_nothing_else_lists_inputs():
 
 
 def sources():
-    found = [path for room in ("src", "derive") for path in (ROOT / room).rglob("*")]
-    return [path for path in found if path.suffix in (".py", ".js")]
+    result = [path for room in ("src", "derive") for path in (ROOT / room).rglob("*")]
+    return [path for path in result if path.suffix in (".py", ".js")]
 
 
 def words(path):

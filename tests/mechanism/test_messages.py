@@ -82,10 +82,10 @@ ERRORS = {
 }
 
 
-@pytest.mark.parametrize("told", ERRORS)
-def test_errors_of_a_machine_are_in_its_units(told):
-    with pytest.raises(ValueError, match=re.escape(told)):
-        ERRORS[told]()
+@pytest.mark.parametrize("message", ERRORS)
+def test_errors_of_a_machine_are_in_its_units(message):
+    with pytest.raises(ValueError, match=re.escape(message)):
+        ERRORS[message]()
 
 
 def test_messages_of_steady_are_in_the_machines_units():
@@ -127,12 +127,12 @@ SLIPS = {
 }
 
 
-@pytest.mark.parametrize("told", SLIPS)
-def test_slips_of_motors_are_told(told):
+@pytest.mark.parametrize("message", SLIPS)
+def test_slips_of_motors_are_told(message):
     slips.WARNED.clear()
     public.LOOKS[0] = 1000
-    with pytest.warns(dx.UnitWarning, match=told) as warned:
-        SLIPS[told]()
+    with pytest.warns(dx.UnitWarning, match=message) as warned:
+        SLIPS[message]()
     assert [each.filename for each in warned] == [__file__]
 
 
@@ -163,15 +163,15 @@ def test_a_load_shows_itself_in_the_units_of_its_machine():
 
 
 @pytest.mark.parametrize(
-    ("call", "told"),
+    ("call", "message"),
     [
         (lambda: PRESS.over_Y(1, 2, 3, 4, 5), "over_Y() takes from 1 to 4 positional arguments but 5"),
         (lambda: dx.over_Y.read(1, 2, 3, 4, 5), "over_Y.read() takes from 1 to 4 positional arguments but 5"),
         (lambda: PRESS.kloss(1, 2, 3, 4, 5), "kloss() takes from 3 to 4 positional arguments but 5"),
     ],
 )
-def test_arguments_of_a_maker_are_counted_without_it(call, told):
-    with pytest.raises(TypeError, match=re.escape(told)):
+def test_arguments_of_a_maker_are_counted_without_it(call, message):
+    with pytest.raises(TypeError, match=re.escape(message)):
         call()
 
 
@@ -180,9 +180,9 @@ def test_threads_speak_the_units_of_the_call_that_they_make():
     heard = []
 
     def tell(call):
-        with pytest.raises(ValueError, match="AB") as found:
+        with pytest.raises(ValueError, match="AB") as result:
             call()
-        heard.append(str(found.value))
+        heard.append(str(result.value))
 
     def force(theta):
         calls = [lambda: dx.evaluate("Y", theta=1.0, ec=0.0, AB=-0.05, BC=0.2), lambda: PRESS.replace(AB=-50)]

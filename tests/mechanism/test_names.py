@@ -70,5 +70,5 @@ def test_a_peak_of_a_sensitivity_looks_for_no_similar_names(monkeypatch):
         raise AssertionError("suggestions that nobody reads")
 
     monkeypatch.setattr("difflib.get_close_matches", refuse)
-    found = dx.peak("T_in_wrt_m_rod", ec=0.01, AB=0.1, BC=0.3, omega0=2.0, m_rod=1.0)
-    assert found["status"] == 0
+    result = dx.peak("T_in_wrt_m_rod", ec=0.01, AB=0.1, BC=0.3, omega0=2.0, m_rod=1.0)
+    assert result["status"] == 0

@@ -102,11 +102,11 @@ def test_a_quantity_that_was_meant(word, name):
 @pytest.mark.parametrize("names", [3, None, [["a_C"]]])
 def test_what_is_no_name_is_told(names):
     point = {"theta": 1.0, "ec": 0.0, "omega0": 1.0, **SIZES}
-    wanted = r"expected the name of a quantity or a list of names"
+    expected = r"expected the name of a quantity or a list of names"
     for call, inputs in (
         (dx.evaluate, point), (dx.evaluate, {**point, "quality": True}), (dx.simulate, RUN | {"m_slider": 1})
     ):  # fmt: skip
-        with pytest.raises(TypeError, match=wanted):
+        with pytest.raises(TypeError, match=expected):
             call(names=names, **inputs)
     with pytest.raises(TypeError, match=r"peak: expected one name, such as 'a_C', got \['a_C'\]"):
         dx.peak(["a_C"], ec=0.0, omega0=1.0, **SIZES)

@@ -17,12 +17,12 @@ def test_every_code_is_told_once():
 
 
 def test_the_words_of_a_point_are_those_of_the_catalogue():
-    told = ", ".join(f"{status:d} {status.words}" for status in PointStatus)
-    assert quantity("status").meaning == told
+    message = ", ".join(f"{status:d} {status.words}" for status in PointStatus)
+    assert quantity("status").meaning == message
 
 
 @pytest.mark.parametrize(
-    ("found", "wanted"),
+    ("result", "expected"),
     [
         (dx.evaluate("status", theta=1.6, **{**SIZES, "ec": 0.24}), PointStatus.CANNOT_BE_ASSEMBLED),
         (dx.feasibility(**{**SIZES, "ec": 0.24})["status"], TurnStatus.CANNOT_TURN),
@@ -30,5 +30,5 @@ def test_the_words_of_a_point_are_those_of_the_catalogue():
         (dx.peak("a_C", omega0=1.0, **{**SIZES, "ec": 1.0})["status"], PeakStatus.CANNOT_BE_ASSEMBLED),
     ],
 )
-def test_a_status_compares_with_its_members(found, wanted):
-    assert found == wanted
+def test_a_status_compares_with_its_members(result, expected):
+    assert result == expected

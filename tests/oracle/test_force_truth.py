@@ -83,16 +83,16 @@ def newton(at, side):
     ]
     matrix = mpmath.matrix([row for row, _ in rows])
     names = ("F_A_X", "F_A_Y", "F_B_X", "F_B_Y", "F_C_X", "F_C_Y", "N_C", "T_in")
-    found = dict(zip(names, mpmath.lu_solve(matrix, mpmath.matrix([x for _, x in rows])), strict=True))
-    found["F_friction"] = -friction * found["N_C"]
-    found["power_in"] = found["T_in"] * speed(at)
+    result = dict(zip(names, mpmath.lu_solve(matrix, mpmath.matrix([x for _, x in rows])), strict=True))
+    result["F_friction"] = -friction * result["N_C"]
+    result["power_in"] = result["T_in"] * speed(at)
     whole = crank + rod + slider
     still = list(momentum(at | {"g_X": 0, "g_Y": 0}, moving))
     inertia = -sum((force for force, _ in still), mpmath.matrix([0, 0]))
-    return found | {
+    return result | {
         "F_shaking_X": at["F_X"] - whole[0],
         "F_shaking_Y": at["F_Y"] - whole[1],
-        "M_shaking": -(found["T_in"] + C_Y * found["N_C"] - C_X * found["F_friction"]),
+        "M_shaking": -(result["T_in"] + C_Y * result["N_C"] - C_X * result["F_friction"]),
         "F_inertia_X": inertia[0],
         "F_inertia_Y": inertia[1],
         "M_inertia": -sum(turning for _, turning in still),
@@ -123,9 +123,9 @@ def test_newton_by_differences(point):
     """A matrix of moments about the fixed centre, the accelerations differences: 20 digits of every force."""
     side = mpmath.sign(truth("N_C", **point))
     with mpmath.workdps(160):
-        found = newton(numbers(point), side)
-        assert mpmath.sign(found["N_C"]) == side
-        for name, value in found.items():
+        result = newton(numbers(point), side)
+        assert mpmath.sign(result["N_C"]) == side
+        for name, value in result.items():
             assert agree(truth(name, **point), value, digits=40), name
 
 

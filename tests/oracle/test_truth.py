@@ -192,8 +192,8 @@ def test_mirror(point):
             continue
         sign = 1 if quantity in EVEN else -1
         sign *= math.prod(-1 for p in tail.split("_") if p in ("theta", "ec", "omega0", "alpha"))
-        told = f"{name}: {'in' if quantity in EVEN else 'not in'} EVEN of {__file__}: is that right?"
-        assert agree(truth(name, **mirrored), sign * truth(name, **point)), told
+        message = f"{name}: {'in' if quantity in EVEN else 'not in'} EVEN of {__file__}: is that right?"
+        assert agree(truth(name, **mirrored), sign * truth(name, **point)), message
     assert agree(truth("delta", **mirrored) + truth("delta", **point), mpmath.pi)
 
 

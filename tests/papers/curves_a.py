@@ -46,8 +46,8 @@ def percent(after, before):
 
 def curves(names, ec, theta, BC=ROD):
     """Curves of the package over theta, NaN where the mechanism cannot be assembled."""
-    found = dx.evaluate(list(names), theta=np.asarray(theta), ec=ec, AB=CRANK, BC=BC, omega0=SPEED)
-    return [found[name] for name in names]
+    result = dx.evaluate(list(names), theta=np.asarray(theta), ec=ec, AB=CRANK, BC=BC, omega0=SPEED)
+    return [result[name] for name in names]
 
 
 def turns_fully(ec, BC=ROD, steps=48):

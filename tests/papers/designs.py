@@ -82,9 +82,9 @@ def package(name, motion):
     return dx.evaluate(name, **motion._asdict())
 
 
-def close(got, want, scale, digits):
+def close(result, want, scale, digits):
     """Agreement to `digits` digits of the larger of the value and its scale."""
-    return abs(got - want) <= mpf(10) ** -digits * (abs(want) + scale)
+    return abs(result - want) <= mpf(10) ** -digits * (abs(want) + scale)
 
 
 def scale_of(kind, motion):

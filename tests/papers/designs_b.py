@@ -98,7 +98,7 @@ def balanced(formula, expected, arm=False):
             solved = free_bodies.solve(motion, lumped(motion, masses))
             scale = force_scale(motion, m_2, m_3) * (q.k if arm else 1)
             pairs = zip(vector(formula(q, m_2, m_3)), vector(expected(solved, q)), strict=True)
-            assert all(close(got, want, scale, 30) for got, want in pairs)
+            assert all(close(result, want, scale, 30) for result, want in pairs)
 
 
 def unbalanced(formula, expected):

@@ -39,8 +39,8 @@ def raw_entries() -> dict[str, dict[str, str]]:
 
 def complaints(row: dict[str, str], proof: Proof) -> list[str]:
     """Differences between an entry and its proof."""
-    found = proof.found()
-    wrong = copied(row, proof) + unshown(row, proof, found)
+    result = proof.found()
+    wrong = copied(row, proof) + unshown(row, proof, result)
     wrong += (
         [] if row["verdict"] == proof.verdict else [f"verdict {row['verdict']!r}, proved {proof.verdict!r}"]
     )
@@ -49,8 +49,8 @@ def complaints(row: dict[str, str], proof: Proof) -> list[str]:
     if bool(row["corrected"]) == (proof.verdict in FINE):
         wrong.append("a correction where nothing is wrong, or none")
     with mp.workdps(DIGITS):
-        wrong += printed(row, proof, found) + corrected(row, proof, found)
-        wrong += marked(row["id"], row["evidence"], found)
+        wrong += printed(row, proof, result) + corrected(row, proof, result)
+        wrong += marked(row["id"], row["evidence"], result)
     coded = proof.instead or (is_formula(row["id"]) and not MARK.search(row["corrected"]))
     prose = row["evidence"] if coded else f"{row['corrected']} {row['evidence']}"
     return wrong + loose(row["id"], prose, proof.cites)
@@ -70,14 +70,14 @@ def copied(row: dict[str, str], proof: Proof) -> list[str]:
     ]
 
 
-def unshown(row: dict[str, str], proof: Proof, found: dict) -> list[str]:
+def unshown(row: dict[str, str], proof: Proof, result: dict) -> list[str]:
     """Numbers of the proof that no entry of its test shows."""
     same = [
         raw_entries()[key] for key, other in PROOFS.items() if other.test is proof.test and key != row["id"]
     ]
     texts = "".join(one["corrected"] + one["evidence"] for one in (row, *same))
     shown = {name for name, _, _ in MARK.findall(texts)} | {"printed", "names"}
-    return [f"{name} is proved and not shown" for name in found if name not in shown]
+    return [f"{name} is proved and not shown" for name in result if name not in shown]
 
 
 def is_formula(key: str) -> bool:
@@ -85,7 +85,7 @@ def is_formula(key: str) -> bool:
     return bool(formulas.FORMULA.fullmatch(key))
 
 
-def printed(row: dict[str, str], proof: Proof, found: dict) -> list[str]:
+def printed(row: dict[str, str], proof: Proof, result: dict) -> list[str]:
     """Errors of the printed form: not the paper's, or not as right or wrong as the verdict says."""
     text, fine = row["printed"], proof.verdict in FINE
     if is_formula(row["id"]):
@@ -101,20 +101,20 @@ def printed(row: dict[str, str], proof: Proof, found: dict) -> list[str]:
         same = not proof.says or numbers == proof.says.split()
     if not same:
         return [f"printed {text!r}, the paper has {proof.says!r}"]
-    if "printed" not in found:
+    if "printed" not in result:
         return [f"printed numbers {numbers} are not the proof's"] if numbers and not proof.says else []
-    true = found["printed"]
+    true = result["printed"]
     agree = len(numbers) == len(true) and all(map(shows, numbers, true))
     return [] if agree == fine else [f"printed {numbers}, proved {true}"]
 
 
-def corrected(row: dict[str, str], proof: Proof, found: dict) -> list[str]:
+def corrected(row: dict[str, str], proof: Proof, result: dict) -> list[str]:
     """Errors of the corrected form."""
     text = row["corrected"]
     if proof.instead:
         return [] if flat(text) == flat(proof.instead) else [f"corrected {text!r}, run {proof.instead!r}"]
     if not is_formula(row["id"]) or MARK.search(text):
-        return marked(row["id"], text, found)
+        return marked(row["id"], text, result)
     wrong = [formulas.misses(row["id"], text, printed=False)] if text else []
     kept = OPPOSITE.get(proof.verdict)
     if kept and re.sub(kept, "", text) != re.sub(kept, "", row["printed"]):
@@ -122,22 +122,24 @@ def corrected(row: dict[str, str], proof: Proof, found: dict) -> list[str]:
     return list(filter(None, wrong))
 
 
-def marked(key: str, text: str, found: dict) -> list[str]:
+def marked(key: str, text: str, result: dict) -> list[str]:
     """The marks of a text that do not show what the proof found."""
     return [
         f"{name or 'formula'}: {miss}"
         for name, kind, shown in MARK.findall(text)
-        if (miss := misshown(key, name, kind, shown, found))
+        if (miss := misshown(key, name, kind, shown, result))
     ]
 
 
-def misshown(key: str, name: str, kind: str, shown: str, found: dict) -> str:
+def misshown(key: str, name: str, kind: str, shown: str, result: dict) -> str:
     """The error of one mark; empty if it is right."""
-    if name and name not in found:
+    if name and name not in result:
         return "not in the proof"
     if kind == "=":
-        return formulas.misses(key, shown, printed=False, names=found.get("names", {}), true=found.get(name))
-    true = found[name]
+        return formulas.misses(
+            key, shown, printed=False, names=result.get("names", {}), true=result.get(name)
+        )
+    true = result[name]
     if isinstance(true, str):
         return "" if shown.split() == true.split() else f"{shown!r} is {true!r}"
     true = list(true) if isinstance(true, (list, tuple)) else [true]

@@ -72,18 +72,20 @@ def misses(key, text, printed, names=None, true=None):
             v, twin = names_of(key, number), twin_of(key, number)
             expected = [twin.sides] if twin else None
             try:
-                got = [[value(side, v | angles | (names or {})) for side in sides] for sides in parse(text)]
+                result = [
+                    [value(side, v | angles | (names or {})) for side in sides] for sides in parse(text)
+                ]
             except (*NO_VALUE, AttributeError) as error:
                 return f"{text}: {error!r}"
-            wanted = [(sides[0] if true is None else true,) * len(sides) for sides in got]
+            wanted = [(sides[0] if true is None else true,) * len(sides) for sides in result]
             wanted = expected if printed and expected else wanted
-            if list(map(len, got)) != list(map(len, wanted)) or (
-                true is None and max(map(len, got)) < 2 and not expected
+            if list(map(len, result)) != list(map(len, wanted)) or (
+                true is None and max(map(len, result)) < 2 and not expected
             ):
                 return f"{text}: other sides"
-            if any(isinstance(side, (list, tuple)) for sides in (*got, *wanted) for side in sides):
+            if any(isinstance(side, (list, tuple)) for sides in (*result, *wanted) for side in sides):
                 return f"{text}: a side that is no number"
-            for sides, right in zip(got, wanted, strict=True):
+            for sides, right in zip(result, wanted, strict=True):
                 size = max(map(abs, (*sides, *right)))
                 if any(abs(a - b) > mpf(10) ** -25 * size for a, b in zip(sides, right, strict=True)):
                     return f"{text}: {[mp.nstr(side, 8) for side in sides]}"
@@ -103,15 +105,15 @@ def terms(node):
     return [*terms(node.left), *terms(node.right)] if is_sum else [node]
 
 
-def apart(text, v, wanted=None):
+def apart(text, v, expected=None):
     """Distance of the sides of a formula from the first one, or from given values, by the terms' size."""
-    found = []
+    result = []
     for number, sides in enumerate(parse(text)):
         size = max(abs(value(term, v)) for side in sides for term in terms(side)) or 1
         got = [value(side, v) for side in sides]
-        right = wanted[number] if wanted else [got[0]] * len(got)
-        found += [abs(a - b) / size for a, b in zip(got, right, strict=True)]
-    return max(found)
+        right = expected[number] if expected else [got[0]] * len(got)
+        result += [abs(a - b) / size for a, b in zip(got, right, strict=True)]
+    return max(result)
 
 
 def half_mended(printed, corrected):
@@ -149,9 +151,9 @@ def everywhere(row, verdict):
     for number, source in itertools.product(range(DESIGNS_OF[key[0]]), AGREEMENT):
         with mp.workdps(2 * ne.DIGITS):
             v, twin = names_of(key, number, source), twin_of(key, number)
-            wanted = [twin.sides] if twin and fine else None
+            expected = [twin.sides] if twin and fine else None
             yield from (
-                (text, number, source) for text in right if apart(text, v, wanted) > AGREEMENT[source]
+                (text, number, source) for text in right if apart(text, v, expected) > AGREEMENT[source]
             )
             yield from ((text, number, source) for text in wrong if apart(text, v) < OFF)
             if source == ORACLE and twin and not agrees(twin, printed, v, fine):

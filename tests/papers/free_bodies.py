@@ -58,8 +58,8 @@ def solve(motion: Motion, bodies: Bodies) -> dict[str, mpf]:
         for centre, length in (("r_crank", motion.AB), ("r_rod", motion.BC)):
             if given[centre] is None:
                 given[centre] = mpf(length) / 2
-        found = ne.solve(ne.State(**{name: given[name] for name in ne.State._fields if name in given}))
-        return {name: PACKAGE[name][1] * found[PACKAGE[name][0]] for name in UNKNOWNS}
+        result = ne.solve(ne.State(**{name: given[name] for name in ne.State._fields if name in given}))
+        return {name: PACKAGE[name][1] * result[PACKAGE[name][0]] for name in UNKNOWNS}
 
 
 def turn_of_rod(motion: Motion, t: mpf = loop.NOW) -> mpf:

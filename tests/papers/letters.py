@@ -31,11 +31,11 @@ def quantities(source, motion, bodies=None):
         names += [*free_bodies.UNKNOWNS, *(f"{name}_wrt_theta" for name in SLOPES)] if bodies else []
         loads = {name: float(x) for name, x in bodies._asdict().items() if x is not None} if bodies else {}
         return {name: mpf(x) for name, x in dx.evaluate(names, **motion._asdict(), **loads).items()}
-    found = {name: loop.truth(name, motion) for name in loop.QUANTITIES}
+    result = {name: loop.truth(name, motion) for name in loop.QUANTITIES}
     if not bodies:
-        return found
+        return result
     slopes = {f"{name}_wrt_theta": loop.partial(name, "theta", motion) for name in SLOPES}
-    return found | slopes | free_bodies.solve(motion, bodies)
+    return result | slopes | free_bodies.solve(motion, bodies)
 
 
 # --- paper A --------------------------------------------------------------------------------------
@@ -166,8 +166,8 @@ def masses_of_the_package(motion, masses):
     """m_2 and m_3."""
     bodies = {"m_crank": masses.m_k, "m_rod": masses.m_c, "m_slider": masses.m_s}
     centres = {"r_crank": masses.k_1, "r_rod": masses.c_2}
-    got = dx.evaluate(["m_rotating", "m_reciprocating"], **motion._asdict(), **bodies, **centres)
-    return {"m_2": mpf(got["m_rotating"]), "m_3": mpf(got["m_reciprocating"])}
+    result = dx.evaluate(["m_rotating", "m_reciprocating"], **motion._asdict(), **bodies, **centres)
+    return {"m_2": mpf(result["m_rotating"]), "m_3": mpf(result["m_reciprocating"])}
 
 
 @remembered
@@ -272,9 +272,9 @@ def names_c(number, source=ORACLE):
     v = symbols(state) | {"IG4": mpf(2), "alpha4": mpf(0)}
     if source == ORACLE:
         return v
-    got = dx.evaluate([*C.PACKAGE, "a_C", "alpha_BC"], **state._asdict())
-    forces = {unknown: sign * mpf(got[name]) for name, (unknown, sign) in C.PACKAGE.items()}
-    return v | forces | {"aG4x": mpf(got["a_C"]), "alpha3": -state.branch * mpf(got["alpha_BC"])}
+    result = dx.evaluate([*C.PACKAGE, "a_C", "alpha_BC"], **state._asdict())
+    forces = {unknown: sign * mpf(result[name]) for name, (unknown, sign) in C.PACKAGE.items()}
+    return v | forces | {"aG4x": mpf(result["a_C"]), "alpha3": -state.branch * mpf(result["alpha_BC"])}
 
 
 def special_c(key, v):

@@ -77,9 +77,11 @@ def step(state: State, torque: Torque, start: mpf, length: mpf, at: Pair, digits
     while True:
         omegas = [omega0 + length * mp.fdot(row, alphas) for row in gauss.integrals]
         thetas = [theta0 + length * mp.fdot(row, omegas) for row in gauss.integrals]
-        found = [angular_acceleration(state, *values) for values in zip(moments, thetas, omegas, strict=True)]
-        change = max(abs(a - b) for a, b in zip(found, alphas, strict=True))
-        alphas = found
+        result = [
+            angular_acceleration(state, *values) for values in zip(moments, thetas, omegas, strict=True)
+        ]
+        change = max(abs(a - b) for a, b in zip(result, alphas, strict=True))
+        alphas = result
         if change <= mpf(10) ** -digits * (1 + max(map(abs, alphas))):
             omegas = [omega0 + length * mp.fdot(row, alphas) for row in gauss.integrals]
             return (

@@ -32,12 +32,12 @@ def change_at(
     new: Callable[[str], str],
 ) -> Entry | None:
     """The entry with one match of a pattern in one of its fields replaced; None where there is none."""
-    places = [(field, found) for field in fields for found in pattern.finditer(entry[field])]
+    places = [(field, result) for field in fields for result in pattern.finditer(entry[field])]
     if not places:
         return None
-    field, found = rng.choice(places)
+    field, result = rng.choice(places)
     text = entry[field]
-    return {**entry, field: text[: found.start()] + new(found.group()) + text[found.end() :]}
+    return {**entry, field: text[: result.start()] + new(result.group()) + text[result.end() :]}
 
 
 def sign(rng: random.Random, entry: Entry) -> Entry | None:

@@ -201,8 +201,8 @@ def right_hand_side(state: State) -> mp.matrix:
 def solve(state: State, friction: mpf | int = 0) -> dict[str, mpf]:
     """The eight unknowns and F14x, for F14x = friction * F14y."""
     with mp.workdps(2 * DIGITS):
-        found = mp.lu_solve(matrix(state, friction), right_hand_side(state))
-        forces = dict(zip(UNKNOWNS, found, strict=True))
+        result = mp.lu_solve(matrix(state, friction), right_hand_side(state))
+        forces = dict(zip(UNKNOWNS, result, strict=True))
         return forces | {"F14x": friction * forces["F14y"]}
 
 

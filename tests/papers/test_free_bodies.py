@@ -55,8 +55,8 @@ def test_moment_about_the_crank_centre(number):
 def test_package(number):
     motion, bodies = LOADED[number]
     solved, scale = free_bodies.solve(motion, bodies), force_scale(motion, sum(bodies[:3]), 0) + 1000
-    got = dx.evaluate(free_bodies.UNKNOWNS, **motion._asdict(), **bodies._asdict())
-    assert all(close(got[name], solved[name], scale, 12) for name in free_bodies.UNKNOWNS)
+    result = dx.evaluate(free_bodies.UNKNOWNS, **motion._asdict(), **bodies._asdict())
+    assert all(close(result[name], solved[name], scale, 12) for name in free_bodies.UNKNOWNS)
 
 
 def test_weight_of_a_crank_at_rest():

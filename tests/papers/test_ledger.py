@@ -24,7 +24,7 @@ LISTING_A = [name.replace("a_c", "a_C") for name in LISTING]
 
 def ids(pattern, document=None):
     """Counts of the parts of ids that match a pattern."""
-    return Counter(found.group(1) for e in entries(document) if (found := re.fullmatch(pattern, e.id)))
+    return Counter(result.group(1) for e in entries(document) if (result := re.fullmatch(pattern, e.id)))
 
 
 # --- complete -------------------------------------------------------------------------------------

@@ -127,14 +127,14 @@ def test_97_percent():
         before, after = ([acceleration_of_signs(a, b, ec, t) for t in angles] for ec in (0.0, 0.15))
         increase |= {(a, b, way): percent(f(after), f(before)) for way, f in WAYS.items()}
     assert len(increase) == 16 * 4
-    wanted = 96.5, 97.5
-    assert not [choice for choice, growth in increase.items() if wanted[0] <= growth < wanted[1]]
+    expected = 96.5, 97.5
+    assert not [choice for choice, growth in increase.items() if expected[0] <= growth < expected[1]]
     outward, size = ([peak("a_C", ec, kind=kind)[0] for ec in ("0", "0.15")] for kind in ("max", "abs"))
     nearest = percent(outward[1], outward[0])
     assert close(min(increase.values(), key=lambda growth: abs(growth - 97)), nearest, 0, 3)
-    found = {"nearest": nearest, "wanted": list(map(mpf, wanted))}
-    found |= {"needed": [mpf("0.151"), percent(peak("a_C", "0.151", kind="max")[0], outward[0])]}
-    return found | {"outward": [nearest, *outward], "size": [percent(size[1], size[0]), *size]}
+    result = {"nearest": nearest, "wanted": list(map(mpf, expected))}
+    result |= {"needed": [mpf("0.151"), percent(peak("a_C", "0.151", kind="max")[0], outward[0])]}
+    return result | {"outward": [nearest, *outward], "size": [percent(size[1], size[0]), *size]}
 
 
 @proves("A-claim-independent", "correct")

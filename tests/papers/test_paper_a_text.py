@@ -92,10 +92,10 @@ def test_omega_is_that_at_theta():
         p = exact_point(motion)
         true = loop.truth("V_B_X", motion), -loop.truth("V_B_Y", motion)
         for omega, right in ((p.omega, True), (p.omega0, False)):
-            got = A.printed_eq2(p.theta, p.AB, omega, mp)
-            assert all(close(g, t, 0, 25) for g, t in zip(got, true, strict=True)) == right
-            got = A.printed_eq4(p.theta, p.AB, omega, p.alpha, mp)
-            assert close(got[0], loop.truth("a_B_X", motion), 0, 25) == right
+            result = A.printed_eq2(p.theta, p.AB, omega, mp)
+            assert all(close(g, t, 0, 25) for g, t in zip(result, true, strict=True)) == right
+            result = A.printed_eq4(p.theta, p.AB, omega, p.alpha, mp)
+            assert close(result[0], loop.truth("a_B_X", motion), 0, 25) == right
 
 
 @proves("A-text-first-component", "correct", says="9", cites="9")

@@ -84,10 +84,10 @@ def test_eq50():
     assert B.printed_eq50(20) == c
     assert B.printed_eq50(0) == 0
     short = mpf("3.2") * 10
-    found = dx.evaluate(
+    result = dx.evaluate(
         ("Y", "status"), theta=math.pi / 2, ec=0.010, AB=K, BC=float(short) / 1000, omega0=SPEED
     )
-    assert found["status"] == 1
+    assert result["status"] == 1
     read = mpf("3.2") * k
     return {"c": c, "at_20": [c, mpf(20)], "short": [mpf(10), short], "read": read, "names": {"k": k}}
 
@@ -126,9 +126,9 @@ def test_time_ratio():
     times = [mpf(ms) / 1000 for ms in (13, 12)]
     assert mp.nstr(times[0] / times[1], 3) == "1.08"
     assert mp.nstr(ratio(20, 128), 3) != "1.08"
-    found = {"ratio": ratio(), "centres": degrees(*dead_centres()), "angles": [360 - returned(), returned()]}
+    result = {"ratio": ratio(), "centres": degrees(*dead_centres()), "angles": [360 - returned(), returned()]}
     rod = [mpf("3.2") * 40, ratio(20, 128)]
-    return found | {
+    return result | {
         "milliseconds": [times[0] / times[1], *times],
         "rod": rod[0],
         "read": rod,
@@ -231,5 +231,5 @@ def test_directions():
 def test_period():
     period, rounded = mpf(60) / 2400, 2 * mp.pi / SPEED
     assert close(mp.degrees(period * SPEED), mpf(MILLISECONDS[25]), 0, 4)
-    found = {"exact": [mpf(60), mpf(2400)], "rounded": [mpf(SPEED), rounded]}
-    return found | {"short": [period, mp.degrees(period * SPEED)], "printed": [period, mpf(360)]}
+    result = {"exact": [mpf(60), mpf(2400)], "rounded": [mpf(SPEED), rounded]}
+    return result | {"short": [period, mp.degrees(period * SPEED)], "printed": [period, mpf(360)]}

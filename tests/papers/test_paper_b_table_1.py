@@ -44,8 +44,8 @@ def test_speed():
 def test_table_1_turns(which):
     """Crank, rod and all three offsets make a mechanism that turns fully."""
     for margin, e in zip(margins(), OFFSETS, strict=True):
-        found = dx.evaluate(("Y", "margin"), theta=0.3, ec=e, AB=K, BC=C, omega0=SPEED)["margin"]
-        assert found == pytest.approx(float(margin) / 1000, abs=1e-15)
+        result = dx.evaluate(("Y", "margin"), theta=0.3, ec=e, AB=K, BC=C, omega0=SPEED)["margin"]
+        assert result == pytest.approx(float(margin) / 1000, abs=1e-15)
     names = {"c": mpf(64), "k": mpf(40)}
     assert names["k"] == stroke(0) / 2
     return {"limit": names["c"] - names["k"], "names": names} if which == "e" else {}
@@ -70,7 +70,7 @@ def test_table_1_masses(mass):
     ends = [B.printed_eq34(q, w) for w in weights]
     both = B.printed_eq36(q, weights[1]), ends[1]
     assert all(
-        close(got, want, 0, 30) for got, want in zip(both, curves.like(q, *curves.CENTRES), strict=True)
+        close(result, want, 0, 30) for result, want in zip(both, curves.like(q, *curves.CENTRES), strict=True)
     )
     torques = [B.drive_torque(q, m_3) for m_3 in ends]
     assert close(torques[2] / torques[0], ends[2] / ends[0], 0, 30)

@@ -69,8 +69,8 @@ def test_table_2_speed():
 )
 def test_table_2_turns(which):
     """It turns fully without an offset."""
-    found = dx.evaluate(("Y", "margin", "status"), theta=1.0, ec=0.0, AB=0.0381, BC=0.1524, omega0=20.994)
-    assert (found["margin"], found["status"]) == (pytest.approx(0.1143), 0)
+    result = dx.evaluate(("Y", "margin", "status"), theta=1.0, ec=0.0, AB=0.0381, BC=0.1524, omega0=20.994)
+    assert (result["margin"], result["status"]) == (pytest.approx(0.1143), 0)
     inch = mpf("0.0254")
     return {"k": {"inch": case_2(mpf(0)).k / inch}, "c": {"inch": case_2(mpf(0)).c / inch}, "e": {}}[which]
 
@@ -147,16 +147,16 @@ def test_table_3_this_model(number):
         )
     true, printed = extremes(B.corrected_eq20), extremes(B.printed_eq20)
     in_mm = extremes(lambda q: B.printed_eq20(in_millimetres(q)) / 1000)
-    found = {
+    result = {
         "by_sign": -true[1 - number],
         "as_a_s": true[number],
         "metres": printed[number],
         "mm": in_mm[number],
     }
     return (
-        found | {"gap": abs(gaps[number]), "apart": difference}
+        result | {"gap": abs(gaps[number]), "apart": difference}
         if number == 0
-        else found | {"gap": abs(gaps[1])}
+        else result | {"gap": abs(gaps[1])}
     )
 
 

@@ -52,8 +52,8 @@ def test_readings_of_the_torque():
 @pytest.mark.parametrize(("reading", "bodies"), [(curves.right, LUMPED), (curves.uniform, ROD)])
 def test_peak_of_the_package(reading, bodies, e):
     loads = {name: value for name, value in bodies._asdict().items() if value is not None}
-    found = dx.peak("T_in", **loads, ec=e / 1000, AB=0.04, BC=0.064, omega0=curves.SPEED)["value"]
-    assert abs(found) == pytest.approx(float(max(torques(reading)[e])), rel=1e-11)
+    result = dx.peak("T_in", **loads, ec=e / 1000, AB=0.04, BC=0.064, omega0=curves.SPEED)["value"]
+    assert abs(result) == pytest.approx(float(max(torques(reading)[e])), rel=1e-11)
 
 
 @proves("B-table1-c", "given", says="Length of Connecting Rod [c] 64 Mm")
@@ -207,13 +207,13 @@ def test_torque_is_equal_in_both_strokes_without_offset():
 @proves("B-claim-one-stroke", "correct")
 def test_peaks_lie_in_one_stroke():
     """With an offset both the greatest acceleration and the greatest torque are in the return stroke."""
-    found = {}
+    result = {}
     for e in OFFSETS[1:]:
         acceleration, torque = peaks(B.corrected_eq20, e), torques(curves.right)[e]
         assert acceleration[0] > acceleration[1]
         assert torque[0] > torque[1]
-        found[f"at_{e}"] = [mpf(e), *acceleration, *torque]
-    return found
+        result[f"at_{e}"] = [mpf(e), *acceleration, *torque]
+    return result
 
 
 @proves("B-claim-torque-grows", "correct")

@@ -84,15 +84,15 @@ def test_friction_needs_a_sign():
     right = set()
     for state in STATES:
         forces = [ne.solve(state, sign * mpf("0.1")) for sign in (1, -1)]
-        powers = [found["F14x"] * ne.sliding(state) for found in forces]
+        powers = [result["F14x"] * ne.sliding(state) for result in forces]
         assert powers[0] * powers[1] < 0
         right.add((1 if powers[0] < 0 else -1, ne.sliding(state)))
         kept = ne.balances(state._replace(mu=0.1))
-        assert [found["F14x"] * ne.sliding(state) < 0 for found in kept] == [True]
+        assert [result["F14x"] * ne.sliding(state) < 0 for result in kept] == [True]
     assert right == set(itertools.product((1, -1), (1, -1)))
     state = next(state for state in STATES if ne.solve(state)["F14y"] * ne.sliding(state) < 0)
-    (found,) = ne.balances(state._replace(mu=0.1))
-    v = symbols(state) | {name: found[name] for name in ("F14x", "F14y")}
+    (result,) = ne.balances(state._replace(mu=0.1))
+    v = symbols(state) | {name: result[name] for name in ("F14x", "F14y")}
     return {"friction": v["F14x"], "names": v | {"mu": mpf(0.1), "sense": mpf(ne.sliding(state))}}
 
 
@@ -160,8 +160,8 @@ def test_inverse_of_the_listing_does_not_exist():
     rank = int(np.linalg.matrix_rank(A))
     assert rank < np.linalg.matrix_rank(right) == 8
     condition = mpf(float(np.linalg.cond(right)))
-    found = {"rank": [mp.det(mp.matrix(A.tolist())), mpf(rank)], "condition": condition}
-    return found | {"names": symbols(report())}
+    result = {"rank": [mp.det(mp.matrix(A.tolist())), mpf(rank)], "condition": condition}
+    return result | {"names": symbols(report())}
 
 
 @proves("C-anticlockwise", "correct")
@@ -183,9 +183,11 @@ def test_accelerations_are_those_of_the_package():
         motion = {
             name: getattr(state, name) for name in ("theta", "ec", "AB", "BC", "omega", "alpha", "branch")
         }
-        got = dx.evaluate(names, **motion)
+        result = dx.evaluate(names, **motion)
         pin, block = ne.acceleration(ne.pin, state), ne.acceleration(ne.slider, state)
-        assert got["Y"] == pytest.approx(float(ne.slider(state, mpf(state.theta))[0]), rel=1e-11)
-        assert (got["a_B_Y"], got["a_B_X"]) == pytest.approx(tuple(map(float, pin)), rel=1e-11)
-        assert got["a_C"] == pytest.approx(float(block[0]), rel=1e-9)
-        assert -state.branch * got["alpha_BC"] == pytest.approx(float(ne.rod_acceleration(state)), rel=1e-9)
+        assert result["Y"] == pytest.approx(float(ne.slider(state, mpf(state.theta))[0]), rel=1e-11)
+        assert (result["a_B_Y"], result["a_B_X"]) == pytest.approx(tuple(map(float, pin)), rel=1e-11)
+        assert result["a_C"] == pytest.approx(float(block[0]), rel=1e-9)
+        assert -state.branch * result["alpha_BC"] == pytest.approx(
+            float(ne.rod_acceleration(state)), rel=1e-9
+        )

@@ -150,12 +150,12 @@ def test_mass_of_a_steel_bar(link):
     faceted, round_ends = (bar(BARS[link], facets)[0] for facets in (FACETS, ROUND))
     assert abs(LINES[f"m{link}"] - faceted) < 7e-5
     assert round_ends - LINES[f"m{link}"] > 1.7e-3
-    found = {
+    result = {
         "length": mpf(round(1000 * BARS[link])),
         "round": real(round_ends),
         "faceted": [real(faceted), mpf(FACETS)],
     }
-    return found | ({"bar": [mpf(7801), mpf(30), mpf(round(1000 * DEPTH))]} if link == "2" else {})
+    return result | ({"bar": [mpf(7801), mpf(30), mpf(round(1000 * DEPTH))]} if link == "2" else {})
 
 
 @proves("C-listing-m4", "given", cites="C-listing-m2", says=C.line("m4"))
@@ -180,8 +180,8 @@ def test_inertia_is_about_the_long_axis(link):
     assert abs(long / printed - 1) < 2e-4
     thin = mpf(mass) * mpf(length) ** 2 / 12
     names = {f"m{link}": mpf(mass), "r": mpf(length), "l": mpf(length)}
-    found = {"z": [real(about_z), mpf(FACETS), real(round_z)], "thin": thin, "names": names}
-    return found | {
+    result = {"z": [real(about_z), mpf(FACETS), real(round_z)], "thin": thin, "names": names}
+    return result | {
         "long": [real(long), mpf(FACETS)],
         "round": real(round_long),
         "ratio": real(about_z / printed),
@@ -205,8 +205,8 @@ def test_alpha2_is_the_start_of_a_free_mechanism():
     moved = free._replace(alpha=LINES["alpha2"])
     assert abs(ne.solve(moved)["T12"]) < mpf("1e-4") * abs(ne.holding_torque(free))
     thin, listed = start(thin_rod()), start(report())
-    found = {"held": symbols(report())["alpha2"], "released": real(LINES["alpha2"]), "thin": thin}
-    return found | {"start": start(free), "force": mpf(50), "listed": listed}
+    result = {"held": symbols(report())["alpha2"], "released": real(LINES["alpha2"]), "thin": thin}
+    return result | {"start": start(free), "force": mpf(50), "listed": listed}
 
 
 SIMILAR = {"aG2x": 0, "aG2y": 3e-5, "aG3x": 2e-4, "aG3y": 3e-5, "alpha3": 1e-4}

@@ -97,9 +97,9 @@ def ends(kind, *torques):
 @proves("C-motion-time", "given", says="250 500 2.25")
 def test_inertias_decide_the_end_states():
     """Which moments of inertia the simulation had changes the first or second digit of the end states."""
-    found = {kind: ends(kind, "250", "500") for kind in ("listed", "bars", "thin")}
-    assert all(abs(a - b) > 0.08 * a for a, b in zip(found["listed"], found["bars"], strict=True))
-    return found | {"time": t_end("250"), "torques": [mpf(250), mpf(500)]}
+    result = {kind: ends(kind, "250", "500") for kind in ("listed", "bars", "thin")}
+    assert all(abs(a - b) > 0.08 * a for a, b in zip(result["listed"], result["bars"], strict=True))
+    return result | {"time": t_end("250"), "torques": [mpf(250), mpf(500)]}
 
 
 @proves("C-sinusoid-time", "given", says="2.0")

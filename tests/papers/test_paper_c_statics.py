@@ -77,9 +77,9 @@ def by_tilt():
     return min(misfit(-reach(ec, tilt)[0]) for ec in (60.0, -60.0) for tilt in tilts)
 
 
-def shown(found):
+def shown(result):
     """A force's size and what it leaves."""
-    return [mpf(abs(found[1])), mpf(found[0])]
+    return [mpf(abs(result[1])), mpf(result[0])]
 
 
 def four_free_numbers():
@@ -145,7 +145,7 @@ def test_weights_are_left_out():
     alone, load, both = held(0, g_X=-g, F_Y=0.0), held(0), held(0, g_X=-g)
     assert close(alone + load, both, 0, 25)
     by_matrix = [held_by_the_printed_matrix([sign * weight for weight in weights]) for sign in (1, 0, -1)]
-    assert all(close(got, want, 0, 25) for got, want in zip(by_matrix, (both, load), strict=False))
+    assert all(close(result, want, 0, 25) for result, want in zip(by_matrix, (both, load), strict=False))
     v = symbols(report(g_X=-g, F_X=3.0))
     sums = {"crank": v["F12y"] + v["F32y"], "rod": v["F43y"] - v["F32y"], "slider": v["F14y"] - v["F43y"]}
     return sums | {

@@ -33,14 +33,14 @@ def test_states_are_of_every_kind():
 def test_package():
     for state in FRICTION:
         (solution,) = ne.balances(state)
-        got = dx.evaluate(list(PACKAGE), **state._asdict())
+        result = dx.evaluate(list(PACKAGE), **state._asdict())
         scale = float(force_scale(solution))
         torque = scale * max(map(abs, (state.AB, state.BC, state.r_crank, state.r_rod))) + abs(
             float(solution["T12"])
         )
         for name, (unknown, sign) in PACKAGE.items():
             size = torque if name == "T_in" else scale
-            assert abs(got[name] - sign * solution[unknown]) <= 1e-10 * size, name
+            assert abs(result[name] - sign * solution[unknown]) <= 1e-10 * size, name
 
 
 def test_virtual_work():

@@ -115,18 +115,18 @@ def closure_of(design, branch):
 
 def repeated(angles, period, low, high):
     """Angles of a period in a range."""
-    found = []
+    result = []
     for angle in angles:
         first = int(mpmath.floor((low - angle) / period))
-        found += [angle + k * period for k in range(first, first + int((high - low) / period) + 3)]
-    return sorted(a for a in found if low <= a <= high)
+        result += [angle + k * period for k in range(first, first + int((high - low) / period) + 3)]
+    return sorted(a for a in result if low <= a <= high)
 
 
 def dead_centres(design, low, high):
     """The angles of crank and rod in line."""
     ec, AB, BC = (mpmath.mpf(design[name]) for name in LENGTHS)
-    found = [mpmath.asin(sine) for sine in (-ec / (AB + BC), ec / (BC - AB)) if abs(sine) <= 1]
-    return repeated([*found, *(mpmath.pi - a for a in found)], 2 * mpmath.pi, low, high)
+    result = [mpmath.asin(sine) for sine in (-ec / (AB + BC), ec / (BC - AB)) if abs(sine) <= 1]
+    return repeated([*result, *(mpmath.pi - a for a in result)], 2 * mpmath.pi, low, high)
 
 
 def crossing(x, closure, a, b):
@@ -151,18 +151,18 @@ def edges(design, branch, loads, low, high):
     """The angles at which forces may change, and what keeps them: a position, "dead centre" or "angle"."""
     closure = closure_of(design, branch)
     turning = dead_centres(design, low - 7, high + 7)
-    found = [(t, "dead centre") for t in turning]
+    result = [(t, "dead centre") for t in turning]
     for load in loads.values():
         if isinstance(load, Turn):
-            found += [
+            result += [
                 (t, "angle")
                 for t in repeated(map(mpmath.mpf, load.angles), mpmath.mpf(load.period), low, high)
             ]
         else:
             for x in load.positions:
                 places = (crossing(mpmath.mpf(x), closure, a, b) for a, b in pairwise(turning))
-                found += [(t, "position") for t in places if t is not None]
-    return sorted(edge for edge in found if low <= edge[0] <= high)
+                result += [(t, "position") for t in places if t is not None]
+    return sorted(edge for edge in result if low <= edge[0] <= high)
 
 
 def arcs(design, branch, loads, theta):
@@ -175,24 +175,24 @@ def arcs(design, branch, loads, theta):
         *edges(design, branch, loads, low - WIDER, high + WIDER),
         (high + WIDER, None),
     ]
-    found = []
+    result = []
     for first, last in pairwise(marks):
         if last[0] - first[0] < TINY:
             continue
         middle = (first[0] + last[0]) / 2
         forces = {name: load.force(middle, closure, way) for name, load in loads.items()}
-        if found and found[-1].forces == forces and not (design.get("mu") and first[1] == "dead centre"):
-            found[-1] = found[-1]._replace(high=last[0], marks=(found[-1].marks[0], last[1]))
+        if result and result[-1].forces == forces and not (design.get("mu") and first[1] == "dead centre"):
+            result[-1] = result[-1]._replace(high=last[0], marks=(result[-1].marks[0], last[1]))
         else:
-            found.append(Arc(first[0], last[0], (first[1], last[1]), forces, {}, {}))
-    found += _touches(design, loads, closure, way)
-    found = [arc for arc in found if doubles(arc, (-inf, inf))]  # what a double of it has before and after
-    found.sort(key=lambda arc: (arc.low, arc.high))
-    found = [
-        arc._replace(before=found[max(k - 1, 0)].forces, after=found[min(k + 1, len(found) - 1)].forces)
-        for k, arc in enumerate(found)
+            result.append(Arc(first[0], last[0], (first[1], last[1]), forces, {}, {}))
+    result += _touches(design, loads, closure, way)
+    result = [arc for arc in result if doubles(arc, (-inf, inf))]  # what a double of it has before and after
+    result.sort(key=lambda arc: (arc.low, arc.high))
+    result = [
+        arc._replace(before=result[max(k - 1, 0)].forces, after=result[min(k + 1, len(result) - 1)].forces)
+        for k, arc in enumerate(result)
     ]
-    return [arc for arc in found if arc.high >= low and arc.low <= high]
+    return [arc for arc in result if arc.high >= low and arc.low <= high]
 
 
 def _touches(design, loads, closure, way):
@@ -221,16 +221,16 @@ def doubles(arc, theta):
 
 def tops(name, kind, design, branch, loads, theta):
     """The extremum of every arc that has a double, the best first."""
-    found = []
+    result = []
     for arc in arcs(design, branch, loads, theta):
         ends = doubles(arc, theta)
         if ends is not None and design.get("mu"):
             ends = _moving(design, branch, ends)
         if ends is not None:
             own = dx.peak(name, kind=kind, branch=branch, theta=ends, **design, **arc.forces)
-            found.append(Top(own["value"], own["theta"], own["gradient"], own["status"], arc, ends))
-    found = [top for top in found if top.value == top.value]
-    return sorted(found, key=lambda top: -SIGN[kind](top.value))
+            result.append(Top(own["value"], own["theta"], own["gradient"], own["status"], arc, ends))
+    result = [top for top in result if top.value == top.value]
+    return sorted(result, key=lambda top: -SIGN[kind](top.value))
 
 
 def _moving(design, branch, ends):
@@ -251,11 +251,11 @@ def _moving(design, branch, ends):
 def sides(name, design, branch, top, room):
     """The sides of jumps of a quantity that an extremum may be reported on."""
     own = dx.evaluate(name, theta=top.theta, branch=branch, **design, **top.arc.forces)
-    found = set()
+    result = set()
     ends = zip((1, -1), top.ends, top.arc.marks, (top.arc.before, top.arc.after), strict=True)
     for side, end, mark, forces in ends:
         jump = top.arc.low if side > 0 else top.arc.high
         there = dx.evaluate(name, theta=top.theta, branch=branch, **design, **forces) if forces else own
         if mark and max(abs(top.theta - end), abs(end - jump)) <= 4e-15 and not abs(there - own) <= room:
-            found.add(side)
-    return found if len(found) == 1 else {0, *found}
+            result.add(side)
+    return result if len(result) == 1 else {0, *result}

@@ -42,8 +42,8 @@ def test_a_derivative_of_a_peak_and_a_peak_of_a_derivative_do_not_share_a_name()
         ValueError, match="peak_max_T_in_wrt_ec would be that of T_in and that of T_in_wrt_ec"
     ):
         dx.sweep([], store=None, peaks={"T_in": "max", "T_in_wrt_ec": "max"}, **inputs)
-    found = dx.sweep([], store=None, peaks={"T_in": "max", "T_in_wrt_ec": "min"}, **inputs)
-    assert float(found.peak_max_T_in_wrt_ec[0]) != float(found.peak_min_T_in_wrt_ec[0])
+    result = dx.sweep([], store=None, peaks={"T_in": "max", "T_in_wrt_ec": "min"}, **inputs)
+    assert float(result.peak_max_T_in_wrt_ec[0]) != float(result.peak_min_T_in_wrt_ec[0])
 
 
 def test_a_peak_under_a_load_over_the_speed_has_its_derivative_by_the_speed():

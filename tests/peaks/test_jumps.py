@@ -63,13 +63,13 @@ class Draw:
     def stroke(self):
         """Steps anywhere, and 1e-17 to 1e-2 m from a dead centre, or at it."""
         draw, low, high = self.random, float(min(self.places)), float(max(self.places))
-        found = set()
-        while len(found) < draw.choice([2, 2, 3, 4]):
+        result = set()
+        while len(result) < draw.choice([2, 2, 3, 4]):
             near = draw.choice([*self.places, None, None])
             away = draw.choice([0, 1, -1, 1, -1]) * 10 ** draw.uniform(-17, -2)
-            found.add(draw.uniform(low, high) if near is None else float(near + away))
-        values = [tuple(self.force() for _ in found) for _ in range(2)]
-        return Stroke(tuple(sorted(found)), values[0], draw.choice([None, values[1]]))
+            result.add(draw.uniform(low, high) if near is None else float(near + away))
+        values = [tuple(self.force() for _ in result) for _ in range(2)]
+        return Stroke(tuple(sorted(result)), values[0], draw.choice([None, values[1]]))
 
     def turn(self):
         draw, period = self.random, self.random.choice([2 * pi, 4 * pi])
@@ -113,19 +113,19 @@ def rounding(draw, every):
     )
 
 
-def check(draw, found):
+def check(draw, result):
     """A peak against the truth: its value, that of its angle, its side."""
     every = draw.top
     best, room = every[0], rounding(draw, every)
-    assert found["value"] == pytest.approx(best.value, rel=0, abs=room)
-    away = min(abs(float(t) - found["theta"]) for t in draw.turning)
-    if not (found["side"] and 1e-13 < away < 0.1):  # where an ulp of the position is many of the angle
-        there = dx.evaluate(draw.name, theta=found["theta"], **draw.given)
-        assert SIGN[draw.kind](there) == pytest.approx(SIGN[draw.kind](found["value"]), rel=0, abs=room)
+    assert result["value"] == pytest.approx(best.value, rel=0, abs=room)
+    away = min(abs(float(t) - result["theta"]) for t in draw.turning)
+    if not (result["side"] and 1e-13 < away < 0.1):  # where an ulp of the position is many of the angle
+        there = dx.evaluate(draw.name, theta=result["theta"], **draw.given)
+        assert SIGN[draw.kind](there) == pytest.approx(SIGN[draw.kind](result["value"]), rel=0, abs=room)
     near = [top for top in every if abs(top.value - best.value) <= room]
     allowed = [sides(draw.name, draw.design, draw.branch, top, 100 * room) for top in near]
-    alike = [s for top, s in zip(near, allowed, strict=True) if abs(top.theta - found["theta"]) <= 1e-6]
-    assert not alike or any(found["side"] in some for some in alike)
+    alike = [s for top, s in zip(near, allowed, strict=True) if abs(top.theta - result["theta"]) <= 1e-6]
+    assert not alike or any(result["side"] in some for some in alike)
 
 
 @pytest.mark.sampled
@@ -149,11 +149,11 @@ def in_arrays(seed):
     draw.design |= BODIES  # one kernel for each name
     draw.name = ("T_in", "F_B_Y")[seed % 2]
     lengths = draw.design["BC"] * (1.0 + np.array([0.0, 1e-3, -1e-7]))
-    found = dx.peak(draw.name, kind=draw.kind, theta=draw.theta, **draw.given | {"BC": lengths})
-    assert found["side"].dtype == np.int8
+    result = dx.peak(draw.name, kind=draw.kind, theta=draw.theta, **draw.given | {"BC": lengths})
+    assert result["side"].dtype == np.int8
     for k, BC in enumerate(lengths.tolist()):
         draw.design["BC"] = BC
-        check(draw, {name: found[name][k] for name in ("value", "theta", "side")})
+        check(draw, {name: result[name][k] for name in ("value", "theta", "side")})
 
 
 def test_in_arrays():
@@ -185,17 +185,17 @@ def test_the_gradient_moves_with_the_jump():
     for seed in range(cases(7, 200, 1000)):
         draw = Draw(30_000 + seed)
         draw.name, draw.kind, draw.theta = ("T_in", "F_C_Y", "N_C")[seed % 3], "max", (0.0, 2 * pi)
-        found = dx.peak(draw.name, kind="max", theta=draw.theta, **draw.given)
+        result = dx.peak(draw.name, kind="max", theta=draw.theta, **draw.given)
         top = draw.top[0]
         marks = [mark for end, mark in zip(top.ends, top.arc.marks, strict=True) if end == top.theta]
-        away = min(abs(float(t) - found["theta"]) for t in draw.turning)
-        off = abs(found["theta"] - top.theta)
-        if not found["side"] or marks != ["position"] or off > 1e-13 or away < 1e-4:
+        away = min(abs(float(t) - result["theta"]) for t in draw.turning)
+        off = abs(result["theta"] - top.theta)
+        if not result["side"] or marks != ["position"] or off > 1e-13 or away < 1e-4:
             continue
         checked += 1
         for parameter in LENGTHS:
-            scale = sum(abs(found["gradient"][p]) for p in LENGTHS)
-            assert found["gradient"][parameter] == pytest.approx(
+            scale = sum(abs(result["gradient"][p]) for p in LENGTHS)
+            assert result["gradient"][parameter] == pytest.approx(
                 moved(draw, top, parameter), rel=1e-8, abs=1e-9 * scale
             )
     assert checked >= cases(1, 20, 100)
@@ -203,22 +203,22 @@ def test_the_gradient_moves_with_the_jump():
 
 def test_the_press_of_the_report():
     for BC in (0.3, 0.299999):
-        found = dx.peak("T_in", **PRESS, **LOAD, BC=BC)
-        assert found["value"] == pytest.approx(press_peak(BC), rel=1e-12)
-        assert found["side"] == 1
+        result = dx.peak("T_in", **PRESS, **LOAD, BC=BC)
+        assert result["value"] == pytest.approx(press_peak(BC), rel=1e-12)
+        assert result["side"] == 1
         for name in (*LENGTHS, "omega0", "m_slider", "mu"):
             at = {**PRESS, "BC": BC}
             near = [at | {name: at[name] * (1 + step)} for step in (1e-6, -1e-6)]
             ahead, behind = (dx.peak("T_in", **LOAD, **one)["value"] for one in near)
             slope = (ahead - behind) / (2e-6 * at[name])
-            assert found["gradient"][name] == pytest.approx(slope, rel=1e-6)
+            assert result["gradient"][name] == pytest.approx(slope, rel=1e-6)
 
 
 def test_nothing_jumps_without_a_jump():
     smooth = {"F_Y": dx.over_Y(POSITIONS, (0.0, -80e3, -80e3))}
     for more in ({}, smooth, {"F_Y": dx.over_theta([0, 2, 4], [1.0, 2.0, 3.0])}):
-        found = dx.peak("T_in", **PRESS, **more, BC=np.array([0.3, 0.31]))
-        assert found["side"].tolist() == [0, 0]
+        result = dx.peak("T_in", **PRESS, **more, BC=np.array([0.3, 0.31]))
+        assert result["side"].tolist() == [0, 0]
     assert dx.peak("a_C", **LOAD, **PRESS, BC=0.3)["side"] == 0  # which no force changes
     assert type(dx.peak("T_in", **LOAD, **PRESS, BC=0.3)["side"]) is int
 
@@ -226,21 +226,21 @@ def test_nothing_jumps_without_a_jump():
 def test_between_two_jumps_a_few_angles_apart():
     """The extremum is on an arc of three doubles: its angle is next to them."""
     draw = Draw(7313969)
-    found = dx.peak(draw.name, kind=draw.kind, theta=draw.theta, **draw.given)
-    check(draw, found)
-    assert draw.top[0].ends[0] - 1e-14 <= found["theta"] <= draw.top[0].ends[1] + 1e-14
+    result = dx.peak(draw.name, kind=draw.kind, theta=draw.theta, **draw.given)
+    check(draw, result)
+    assert draw.top[0].ends[0] - 1e-14 <= result["theta"] <= draw.top[0].ends[1] + 1e-14
 
 
 def test_at_a_dead_centre_that_is_reached_in_one_double_alone():
     design = {"ec": 0.0, "AB": 0.25, "BC": 0.75, "omega0": 1.0, "m_slider": 1.0}
     for x, force in ((1.0, -500.0), (nextafter(1.0, 2.0), 0.0)):  # at 0 the slider is at 1.0 exactly
         load = dx.over_Y([0.5, x], [0.0, -500.0], kind="step")
-        found = dx.peak("F_C_Y", F_Y=load, kind="max", **design)
+        result = dx.peak("F_C_Y", F_Y=load, kind="max", **design)
         alone = dx.peak("F_C_Y", F_Y=0.0, kind="max", **design)["value"]
         at_0 = dx.evaluate("F_C_Y", theta=0.0, F_Y=force, **design)
-        assert found["value"] == pytest.approx(max(alone, at_0), rel=1e-14)
-        there = dx.evaluate("F_C_Y", theta=found["theta"], F_Y=load, **design)
-        assert there == pytest.approx(found["value"], rel=1e-15)
+        assert result["value"] == pytest.approx(max(alone, at_0), rel=1e-14)
+        there = dx.evaluate("F_C_Y", theta=result["theta"], F_Y=load, **design)
+        assert there == pytest.approx(result["value"], rel=1e-15)
 
 
 @pytest.mark.parametrize("closed", [False, True])
@@ -250,9 +250,9 @@ def test_a_function_of_theta_jumps_on_either_side_of_its_node(closed):
         return np.where(early, 100.0 * np.cos(3 * theta), 500.0 * np.cos(theta + 0.1))
 
     load = dx.over_theta(force, nodes=[0.0, 1.0])
-    found = dx.peak("F_C_Y", kind="min", theta=(0.5, 1.5), F_Y=load, ec=0.01, AB=0.04, BC=0.064)
-    assert found["value"] == pytest.approx(-500.0 * np.cos(1.1), rel=1e-14)
-    assert (found["side"], found["theta"]) == (1, nextafter(1.0, 2.0) if closed else 1.0)
+    result = dx.peak("F_C_Y", kind="min", theta=(0.5, 1.5), F_Y=load, ec=0.01, AB=0.04, BC=0.064)
+    assert result["value"] == pytest.approx(-500.0 * np.cos(1.1), rel=1e-14)
+    assert (result["side"], result["theta"]) == (1, nextafter(1.0, 2.0) if closed else 1.0)
     smooth = dx.peak("F_C_Y", kind="max", theta=(1.0, 4.0), F_Y=load, ec=0.01, AB=0.04, BC=0.064)
     assert smooth["value"] == pytest.approx(500.0, rel=1e-14)
     assert smooth["side"] == 0
@@ -280,18 +280,18 @@ def test_beside_a_jump_values_are_those_of_its_side():
             Y, slope = closure(mpmath.mpf(at + away))
             right = -values[slope * way < 0][x <= Y]
             sure = abs(Y - x) > 4e-16 * (design["AB"] + design["BC"]) and abs(slope) > 1e-15 * AB
-            found = [dx.evaluate("F_C_Y", theta=at + away, **given)]
-            found += dx.evaluate("F_C_Y", theta=np.full(3, at + away), **given).tolist()
+            result = [dx.evaluate("F_C_Y", theta=at + away, **given)]
+            result += dx.evaluate("F_C_Y", theta=np.full(3, at + away), **given).tolist()
             allowed = {right} if sure else {-value for both in values for value in both}
-            assert set(found) <= allowed
+            assert set(result) <= allowed
 
 
 def test_where_no_forces_balance_on_the_other_side():
     design = {"ec": 0.02, "AB": 0.05, "BC": 0.09, "omega0": 1e-3, "mu": 2.0}
     loads = {"F_Y": Stroke((0.05, 0.1, 0.14), (100.0, -100.0, -100.0), None)}
-    found = dx.peak("T_in", F_Y=loads["F_Y"].load, **design)
-    assert found["value"] == pytest.approx(tops("T_in", "absmax", design, 1, loads, (0.0, 2 * pi))[0].value)
-    assert (found["status"], found["side"]) == (5, 1)
+    result = dx.peak("T_in", F_Y=loads["F_Y"].load, **design)
+    assert result["value"] == pytest.approx(tops("T_in", "absmax", design, 1, loads, (0.0, 2 * pi))[0].value)
+    assert (result["status"], result["side"]) == (5, 1)
 
 
 # ---- what is made of peaks -------------------------------------------------------------------------
@@ -301,11 +301,11 @@ def test_a_reduction_tells_on_which_side_its_sample_is():
     at = dx.peak("T_in", **PRESS, **LOAD, BC=0.3)["theta"]
     theta = np.sort(np.append(np.linspace(0, 2 * pi, 361), [at, nextafter(at, 0)]))
     grid = {"theta": theta, "BC": [0.3, 0.31], **PRESS, **LOAD}
-    found = dx.grid(["T_in", "a_C"], **grid, reduce={"theta": ["absmax", "mean"]})
-    assert found.T_in_absmax_side.values.tolist() == [1, 0]
-    assert found.T_in_absmax_side.dtype == np.int8
-    assert found.a_C_absmax_side.values.tolist() == [0, 0]
-    assert "T_in_mean_side" not in found
+    result = dx.grid(["T_in", "a_C"], **grid, reduce={"theta": ["absmax", "mean"]})
+    assert result.T_in_absmax_side.values.tolist() == [1, 0]
+    assert result.T_in_absmax_side.dtype == np.int8
+    assert result.a_C_absmax_side.values.tolist() == [0, 0]
+    assert "T_in_mean_side" not in result
     before = dx.grid("F_C_Y", **grid, reduce={("theta", "BC"): "min"})
     assert before.F_C_Y_min_side == (before.F_C_Y_min_theta == nextafter(at, 0)) * -1
     plain = dx.grid("T_in", **PRESS, BC=[0.3, 0.31], theta=theta, reduce={"theta": "absmax"})
@@ -314,11 +314,11 @@ def test_a_reduction_tells_on_which_side_its_sample_is():
 
 def test_tolerance_samples_the_truth():
     sizes = {**PRESS, **LOAD, "BC": dx.plus_minus(0.3, 3e-6)}
-    found = dx.tolerance(("absmax", "T_in"), **sizes, samples=40)
+    result = dx.tolerance(("absmax", "T_in"), **sizes, samples=40)
     slope = dx.peak("T_in", **PRESS, **LOAD, BC=0.3)["gradient"]["BC"]
-    assert found["first_order"]["std"] == pytest.approx(slope * 1e-6, rel=1e-9)
-    assert found["monte_carlo"]["std"] == pytest.approx(slope * 1e-6, rel=0.5)
-    assert found["monte_carlo"]["largest"] - found["monte_carlo"]["least"] < 8e-6 * slope
+    assert result["first_order"]["std"] == pytest.approx(slope * 1e-6, rel=1e-9)
+    assert result["monte_carlo"]["std"] == pytest.approx(slope * 1e-6, rel=0.5)
+    assert result["monte_carlo"]["largest"] - result["monte_carlo"]["least"] < 8e-6 * slope
 
 
 @pytest.mark.thorough
@@ -350,9 +350,9 @@ def test_run_tells_the_side(tmp_path, monkeypatch):
         """
     )
     run = dx.scene("press.toml").run()
-    found = run.peaks[0].dataset
-    np.testing.assert_allclose(found["value"], [press_peak(0.3), press_peak()], rtol=1e-12)
-    assert found["side"].values.tolist() == [1, 1]
+    result = run.peaks[0].dataset
+    np.testing.assert_allclose(result["value"], [press_peak(0.3), press_peak()], rtol=1e-12)
+    assert result["side"].values.tolist() == [1, 1]
     assert "side" in run.report()
 
 
@@ -360,15 +360,15 @@ def test_run_tells_the_side(tmp_path, monkeypatch):
 @pytest.mark.parametrize("way", [1, -1])
 def test_drive_has_the_gradient_at_a_jump(way):
     machine = {**PRESS, **LOAD, "BC": 0.299999, "omega0": way * 2 * pi}
-    found = dx.drive(**machine)
+    result = dx.drive(**machine)
     peak = dx.peak("T_in", **machine, theta=(0.0, 2 * pi) if way > 0 else (-2 * pi, 0.0))
-    assert found["torque_peak"] == pytest.approx(peak["value"], rel=1e-12)
+    assert result["torque_peak"] == pytest.approx(peak["value"], rel=1e-12)
     for name in ("AB", "mu", "omega0"):
         near = [machine | {name: machine[name] * (1 + step)} for step in (1e-6, -1e-6)]
         ahead, behind = (dx.drive(**one) for one in near)
         for figure in ("torque_peak", "power_peak", "starting_torque"):
             slope = (ahead[figure] - behind[figure]) / (2e-6 * machine[name])
-            assert found["gradient"][figure][name] == pytest.approx(slope, rel=1e-6, abs=1e-6)
+            assert result["gradient"][figure][name] == pytest.approx(slope, rel=1e-6, abs=1e-6)
 
 
 def test_curves_reach_the_peak():
@@ -422,18 +422,18 @@ def test_extremes_where_a_condition_of_a_user_defined_quantity_changes(name):
     design = {"ec": 0.02, "AB": 0.125, "BC": 0.35, "omega0": 150.0, "m_slider": 0.8}
     dx.define("rig", expression, **constants)
     try:
-        found = dx.peak("rig", kind=kind, **design)
+        result = dx.peak("rig", kind=kind, **design)
         both = dx.peak("rig", kind=kind, **{**design, "ec": [0.03, 0.02]})
         theta = np.linspace(0.0, 2 * np.pi, 200_001)
         sampled = dx.evaluate("rig", theta=theta, **design)
-        sides = dx.evaluate("rig", theta=found["theta"] + np.array([-1e-7, 1e-7]), **design)
+        sides = dx.evaluate("rig", theta=result["theta"] + np.array([-1e-7, 1e-7]), **design)
     finally:
         dx.undefine("rig")
     with mp.workdps(40):
 
         def at(**inputs):
             inputs = {n: mp.mpf(v) for n, v in {**design, **inputs}.items()}
-            root = mp.findroot(lambda t: eval(condition, _motion(t, **inputs)), mp.mpf(found["theta"]))
+            root = mp.findroot(lambda t: eval(condition, _motion(t, **inputs)), mp.mpf(result["theta"]))
             return root, eval(limit, _motion(root, **inputs))
 
         angle, value = at()
@@ -441,18 +441,18 @@ def test_extremes_where_a_condition_of_a_user_defined_quantity_changes(name):
         slopes = {
             p: (at(**{p: design[p] + step})[1] - at(**{p: design[p] - step})[1]) / (2 * step) for p in design
         }
-        assert abs(found["theta"] - angle) < 1e-14
-        assert found["value"] == pytest.approx(float(value), rel=1e-13)
+        assert abs(result["theta"] - angle) < 1e-14
+        assert result["value"] == pytest.approx(float(value), rel=1e-13)
         for p, slope in slopes.items():
             scale = float(abs(value)) / design[p]
-            assert found["gradient"].get(p, 0.0) == pytest.approx(
+            assert result["gradient"].get(p, 0.0) == pytest.approx(
                 float(slope), rel=1e-10, abs=1e-11 * scale
             ), p
-    assert found["status"] == 0
-    assert found["value"] <= sampled.min() if kind == "min" else found["value"] >= sampled.max()
+    assert result["status"] == 0
+    assert result["value"] <= sampled.min() if kind == "min" else result["value"] >= sampled.max()
     if name.startswith("jump"):
-        assert sides[(found["side"] + 1) // 2] == pytest.approx(found["value"], rel=1e-4)
-        assert sides[(1 - found["side"]) // 2] != pytest.approx(found["value"], rel=0.1)
+        assert sides[(result["side"] + 1) // 2] == pytest.approx(result["value"], rel=1e-4)
+        assert sides[(1 - result["side"]) // 2] != pytest.approx(result["value"], rel=0.1)
     else:
-        assert found["side"] == 0
-    assert both["value"][1] == found["value"]
+        assert result["side"] == 0
+    assert both["value"][1] == result["value"]

@@ -51,8 +51,8 @@ def test_no_value_with_friction_is_that_of_a_dead_centre(load):
     given = {"ec": ec, "mu": 0.17, "g_Y": -9.81, "F_Y": load, **MACHINE}
     for name, kind, best in (("F_C_Y", "min", np.nanmin), ("F_friction", "max", np.nanmax)):
         sign = 1.0 if kind == "max" else -1.0
-        found = dx.peak(name, kind=kind, **given)["value"]
+        result = dx.peak(name, kind=kind, **given)["value"]
         swept = best(dx.evaluate(name, **{**given, "ec": ec[:, None], "theta": theta}), axis=1)
-        beyond = sign * (found - swept) / np.abs(swept)
+        beyond = sign * (result - swept) / np.abs(swept)
         assert (beyond >= -1e-8).all()
         assert (beyond <= 2e-3).all()

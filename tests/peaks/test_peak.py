@@ -35,12 +35,12 @@ def exact_peak(order, near, ec, AB, BC):
 @pytest.mark.parametrize(("name", "order"), [("Y", 0), ("V_C", 1), ("a_C", 2)])
 @pytest.mark.parametrize("kind", ["max", "min", "absmax"])
 def test_value_and_angle(name, order, kind, ec):
-    found = dx.peak(name, ec=ec, kind=kind, **MACHINE)
-    theta, value = exact_peak(order, found["theta"], ec, 0.125, 0.35)
+    result = dx.peak(name, ec=ec, kind=kind, **MACHINE)
+    theta, value = exact_peak(order, result["theta"], ec, 0.125, 0.35)
     value = abs(value) if kind == "absmax" else value
-    assert found["status"] == 0
-    assert abs(found["value"] / (value * mpmath.mpf(OMEGA) ** order) - 1) < 1e-13
-    assert abs(found["theta"] - theta) < 1e-7
+    assert result["status"] == 0
+    assert abs(result["value"] / (value * mpmath.mpf(OMEGA) ** order) - 1) < 1e-13
+    assert abs(result["theta"] - theta) < 1e-7
 
 
 @pytest.mark.parametrize("power", [10, 20, 30, 40])
@@ -48,15 +48,15 @@ def test_value_and_angle(name, order, kind, ec):
 def test_peaks_as_narrow_as_the_root_of_the_margin(power, side):
     """Jerk next to the change point: a uniform sweep of 720 sees nothing of it."""
     design = {"ec": side * 0.5, "AB": 1.0, "BC": 1.5 + 2.0**-power, "omega0": 1.0}
-    found = dx.peak("j_C", **design)
+    result = dx.peak("j_C", **design)
     exact = [
-        abs(truth("j_C", theta=found["theta"] + step * 2.0 ** (-power / 2), **design))
+        abs(truth("j_C", theta=result["theta"] + step * 2.0 ** (-power / 2), **design))
         for step in (-0.01, 0, 0.01)
     ]
-    assert abs(found["value"] / exact[1] - 1) < 1e-13
+    assert abs(result["value"] / exact[1] - 1) < 1e-13
     assert exact[1] > max(exact[0], exact[2])
     # R = sqrt(m + x^2/2), x the distance to the quarter: the jerk is extreme at x = sqrt(m/2), as 1/m.
-    distance = abs(found["theta"] - (np.pi / 2 if side > 0 else 3 * np.pi / 2))
+    distance = abs(result["theta"] - (np.pi / 2 if side > 0 else 3 * np.pi / 2))
     assert distance == pytest.approx(2.0 ** (-(power + 1) / 2), rel=1e-3)
 
 
@@ -72,20 +72,20 @@ def test_gradient_is_that_of_the_peak():
 
 
 def test_ends_of_the_range_count():
-    found = dx.peak("a_C", ec=0.0, theta=(0.3, 1.0), kind="min", **MACHINE)
-    assert found["theta"] == 0.3
+    result = dx.peak("a_C", ec=0.0, theta=(0.3, 1.0), kind="min", **MACHINE)
+    assert result["theta"] == 0.3
     assert dx.peak("a_C", ec=0.1, theta=("0 deg", "90 deg"), **MACHINE)["theta"] <= np.pi / 2
-    assert found["value"] == pytest.approx(dx.evaluate("a_C", theta=0.3, ec=0.0, **MACHINE), rel=1e-15)
+    assert result["value"] == pytest.approx(dx.evaluate("a_C", theta=0.3, ec=0.0, **MACHINE), rel=1e-15)
 
 
 def test_a_mechanism_that_cannot_turn():
     """Acceleration grows without bound at the limit angle; the position has its extremum there."""
-    found = dx.peak("a_C", ec=0.23, **MACHINE)
-    assert found["value"] == math.inf
-    assert found["status"] == 2
-    assert math.isnan(found["gradient"]["ec"])
+    result = dx.peak("a_C", ec=0.23, **MACHINE)
+    assert result["value"] == math.inf
+    assert result["status"] == 2
+    assert math.isnan(result["gradient"]["ec"])
     limit = math.asin(0.12 / 0.125)
-    assert found["theta"] == pytest.approx(limit, abs=1e-9) or found["theta"] == pytest.approx(
+    assert result["theta"] == pytest.approx(limit, abs=1e-9) or result["theta"] == pytest.approx(
         math.pi - limit, abs=1e-9
     )
     lowest = dx.peak("Y", ec=0.23, kind="min", AB=0.125, BC=0.35)
@@ -102,10 +102,10 @@ def test_rates_of_a_mechanism_that_cannot_turn_have_no_bound(name, digits):
     ranges = (0.02, 0.3), (0.05, 0.4), (-0.4, 0.4)
     AB, BC, ec = (np.round(rng.uniform(*ends, 1200), digits) for ends in ranges)
     rockers = (AB + np.abs(ec) - 1e-6 > BC) & (np.abs(ec) < AB + BC - 1e-6)
-    found = dx.peak(name, AB=AB[rockers], BC=BC[rockers], ec=ec[rockers], omega0=90.0)
+    result = dx.peak(name, AB=AB[rockers], BC=BC[rockers], ec=ec[rockers], omega0=90.0)
     assert np.count_nonzero(rockers) > 500
-    assert np.isinf(found["value"]).all()
-    assert (found["status"] == 2).all()
+    assert np.isinf(result["value"]).all()
+    assert (result["status"] == 2).all()
 
 
 def test_a_margin_below_zero_by_less_than_its_rounding():
@@ -118,33 +118,33 @@ def test_a_margin_below_zero_by_less_than_its_rounding():
     changes = np.array([margin == 0 for margin in exact])  # V_C is greatest there and jumps, a_C elsewhere
     assert np.count_nonzero(short & (BC - AB - ec >= 0.0)) > 0
     for name, special in (("V_C", short | changes), ("a_C", short)):
-        found = dx.peak(name, AB=AB, ec=ec, BC=BC, omega0=90.0)
-        assert np.array_equal(np.isinf(found["value"]), short)
-        assert np.array_equal(found["status"] == 2, special)
+        result = dx.peak(name, AB=AB, ec=ec, BC=BC, omega0=90.0)
+        assert np.array_equal(np.isinf(result["value"]), short)
+        assert np.array_equal(result["status"] == 2, special)
 
 
 @pytest.mark.parametrize("name", ["V_C", "a_C"])
 def test_an_arc_narrower_than_a_microradian_has_no_bound_either(name):
     short = 10.0 ** -np.arange(9.0, 15.5, 0.5)  # |ec| short of AB + BC by this share: arcs down to 1e-7 rad
-    found = dx.peak(name, AB=1.0, BC=2.0, ec=-3.0 * (1.0 - short), omega0=90.0)
-    assert np.isinf(found["value"]).all()
-    assert (found["status"] == 2).all()
+    result = dx.peak(name, AB=1.0, BC=2.0, ec=-3.0 * (1.0 - short), omega0=90.0)
+    assert np.isinf(result["value"]).all()
+    assert (result["status"] == 2).all()
 
 
 def test_a_limit_angle_at_the_end_of_the_range_is_one():
     """|ec| = BC: theta = 0 is assembled, and the last angle that is; rounding has no say in it."""
-    found = dx.peak("V_C", AB=np.linspace(0.1, 0.3, 61), BC=0.37, ec=0.37, omega0=90.0)
-    assert (found["status"] == 2).all()
-    assert np.isinf(found["value"]).all()
+    result = dx.peak("V_C", AB=np.linspace(0.1, 0.3, 61), BC=0.37, ec=0.37, omega0=90.0)
+    assert (result["status"] == 2).all()
+    assert np.isinf(result["value"]).all()
 
 
 def test_a_stall_is_an_end_but_no_pole():
     """At the stall a_C is alpha dY/dtheta, finite, although nothing goes on beyond."""
-    found = dx.peak("a_C", ec=0.01, AB=0.04, BC=0.1, omega0=10.0, alpha=-50.0, kind="max", theta=(0.0, 2.0))
+    result = dx.peak("a_C", ec=0.01, AB=0.04, BC=0.1, omega0=10.0, alpha=-50.0, kind="max", theta=(0.0, 2.0))
     slope = dx.evaluate("V_C", theta=1.0, ec=0.01, AB=0.04, BC=0.1, omega=1.0)
-    assert found["theta"] == pytest.approx(1.0, abs=1e-9)
-    assert found["value"] == pytest.approx(-50.0 * slope, rel=1e-9)
-    assert found["status"] == 2
+    assert result["theta"] == pytest.approx(1.0, abs=1e-9)
+    assert result["value"] == pytest.approx(-50.0 * slope, rel=1e-9)
+    assert result["status"] == 2
 
 
 def test_what_needs_no_motion_and_what_is_nothing():
@@ -165,12 +165,12 @@ def test_what_needs_no_motion_and_what_is_nothing():
 
 
 def test_designs_broadcast_and_what_cannot_be_is_told():
-    found = dx.peak("a_C", ec=[[0.0], [0.15], [0.9]], AB=[0.125, 0.1], BC=0.35, omega0=OMEGA)
-    assert found["value"].shape == found["theta"].shape == found["gradient"]["AB"].shape == (3, 2)
-    assert found["status"].tolist() == [[0, 0], [0, 0], [1, 1]]
-    assert np.isnan([found[key][2] for key in ("value", "theta")]).all()
+    result = dx.peak("a_C", ec=[[0.0], [0.15], [0.9]], AB=[0.125, 0.1], BC=0.35, omega0=OMEGA)
+    assert result["value"].shape == result["theta"].shape == result["gradient"]["AB"].shape == (3, 2)
+    assert result["status"].tolist() == [[0, 0], [0, 0], [1, 1]]
+    assert np.isnan([result[key][2] for key in ("value", "theta")]).all()
     one = dx.peak("a_C", ec=0.15, AB=0.1, BC=0.35, omega0=OMEGA)
-    assert found["value"][1, 1] == pytest.approx(one["value"], rel=1e-14)
+    assert result["value"][1, 1] == pytest.approx(one["value"], rel=1e-14)
 
 
 def test_of_two_equal_peaks_the_first_is_told():
@@ -238,22 +238,24 @@ def test_no_extremum_is_missed(name, near):
         ("min", np.nanmin(swept, axis=1)),
         ("absmax", scale),
     ):
-        found = dx.peak(name, kind=kind, branch=branch, **designs)["value"]
-        short = (found - best if kind == "min" else best - found) / scale
+        result = dx.peak(name, kind=kind, branch=branch, **designs)["value"]
+        short = (result - best if kind == "min" else best - result) / scale
         assert short.max() <= 1e-13, np.argmax(short)
 
 
 def test_two_maxima_next_to_the_inner_dead_centre():
     """They become one where Y = 0 at theta = pi: -1 + 4/l - 3/l^3 = 0, l = BC/AB = (3 + sqrt(21))/2."""
     ratio = np.linspace(3.3, 4.1, 400)
-    found = dx.peak("a_C", ec=0.0, AB=1.0, BC=ratio, omega0=1.0, kind="max")
+    result = dx.peak("a_C", ec=0.0, AB=1.0, BC=ratio, omega0=1.0, kind="max")
     centre = 1.0 - 1.0 / ratio  # a_C at theta = pi
-    assert np.all(found["value"] >= centre * (1.0 - 1e-15))
-    apart = np.abs(found["theta"] - np.pi) > 1e-6
+    assert np.all(result["value"] >= centre * (1.0 - 1e-15))
+    apart = np.abs(result["theta"] - np.pi) > 1e-6
     assert np.all(apart[ratio < 3.7905])
     assert not apart[ratio > 3.7915].any()
-    theta = found["theta"][ratio < 3.7905]
-    for angle, value, BC in zip(theta[::40], found["value"][ratio < 3.7905][::40], ratio[::40], strict=False):
+    theta = result["theta"][ratio < 3.7905]
+    for angle, value, BC in zip(
+        theta[::40], result["value"][ratio < 3.7905][::40], ratio[::40], strict=False
+    ):
         _, exact = exact_peak(2, angle, 0.0, 1.0, BC)
         assert abs(value / exact - 1) < 1e-14
 
@@ -295,15 +297,15 @@ def test_sensitivities_have_peaks_too(name, near):
     design = {"ec": 0.04, "AB": 0.125, "BC": 0.35, "omega0": 20.0}
     design |= {"m_rod": 0.5, "m_slider": 0.8} if name.startswith("T_in") else {}
     swept = np.abs(dx.evaluate(name, theta=np.linspace(0, 2 * np.pi, 20_001), **design)).max()
-    found = dx.peak(name, **design)
-    assert swept <= found["value"] * (1 + 1e-15)
-    assert found["value"] == pytest.approx(swept, rel=near)
+    result = dx.peak(name, **design)
+    assert swept <= result["value"] * (1 + 1e-15)
+    assert result["value"] == pytest.approx(swept, rel=near)
     for parameter in ("ec", "BC"):
         step = 1e-6
         up, down = (
             dx.peak(name, **{**design, parameter: design[parameter] + s})["value"] for s in (step, -step)
         )
-        assert found["gradient"][parameter] == pytest.approx((up - down) / (2 * step), rel=1e-6)
+        assert result["gradient"][parameter] == pytest.approx((up - down) / (2 * step), rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -317,33 +319,33 @@ def test_sensitivities_have_peaks_too(name, near):
 )
 def test_gradient_is_exact(name, order, design):
     """Against differences of the peak in 50 digits."""
-    found = dx.peak(name, **dict(zip(("ec", "AB", "BC"), design, strict=True)), omega0=1.0)
+    result = dx.peak(name, **dict(zip(("ec", "AB", "BC"), design, strict=True)), omega0=1.0)
     with mpmath.workdps(60):
         exact = [mpmath.mpf(x) for x in design]
         step = mpmath.mpf(10) ** -25
-        sign = mpmath.sign(rate(order, *exact)(mpmath.mpf(found["theta"])))
+        sign = mpmath.sign(rate(order, *exact)(mpmath.mpf(result["theta"])))
         for place, parameter in enumerate(("ec", "AB", "BC")):
             ends = []
             for side in (1, -1):
                 moved = list(exact)
                 moved[place] += side * step
-                near = mpmath.mpf(found["theta"])  # the peak is narrow: two starts next to each other
+                near = mpmath.mpf(result["theta"])  # the peak is narrow: two starts next to each other
                 theta = mpmath.findroot(rate(order + 1, *moved), (near, near + 1e-10), verify=False)
                 ends.append(sign * rate(order, *moved)(theta))
             slope = (ends[0] - ends[1]) / (2 * step)
-            assert found["gradient"][parameter] == pytest.approx(float(slope), rel=1e-9), parameter
+            assert result["gradient"][parameter] == pytest.approx(float(slope), rel=1e-9), parameter
 
 
 def test_the_curve_up_to_the_edge_of_feasibility():
     """Values and slopes exist up to the last eccentricity; beyond it the acceleration has no bound."""
     ec = 0.225 + np.array([-1e-3, -1e-6, -1e-9, -1e-12, 1e-12, 1e-6])
-    found = dx.peak("a_C", ec=ec, **MACHINE)
-    assert found["status"].tolist() == [0, 0, 0, 0, 2, 2]
-    assert np.isfinite(found["value"][:4]).all()
-    assert np.isfinite(found["gradient"]["ec"][:4]).all()
-    assert np.isinf(found["value"][4:]).all()
-    assert np.isnan(found["gradient"]["ec"][4:]).all()
-    assert np.all(np.diff(found["value"][:4]) > 0.0)
+    result = dx.peak("a_C", ec=ec, **MACHINE)
+    assert result["status"].tolist() == [0, 0, 0, 0, 2, 2]
+    assert np.isfinite(result["value"][:4]).all()
+    assert np.isfinite(result["gradient"]["ec"][:4]).all()
+    assert np.isinf(result["value"][4:]).all()
+    assert np.isnan(result["gradient"]["ec"][4:]).all()
+    assert np.all(np.diff(result["value"][:4]) > 0.0)
 
 
 @pytest.mark.parametrize(
@@ -354,11 +356,11 @@ def test_a_bad_design_is_told_alone(name, loads, bad):
     """Also where no other design of the call needs a closer look."""
     good = {"ec": 0.01, "AB": 0.06, "BC": 0.22, "omega0": 94.2}
     columns = {key: np.array([value, bad.get(key, value), value]) for key, value in good.items()}
-    found = dx.peak(name, **columns, **loads)
-    assert found["status"].tolist() == [0, 4, 0]
-    assert np.isnan(found["value"]).tolist() == [False, True, False]
-    assert np.isnan(found["gradient"]["ec"]).tolist() == [False, True, False]
-    assert found["value"][0] == pytest.approx(dx.peak(name, **good, **loads)["value"], rel=1e-12)
+    result = dx.peak(name, **columns, **loads)
+    assert result["status"].tolist() == [0, 4, 0]
+    assert np.isnan(result["value"]).tolist() == [False, True, False]
+    assert np.isnan(result["gradient"]["ec"]).tolist() == [False, True, False]
+    assert result["value"][0] == pytest.approx(dx.peak(name, **good, **loads)["value"], rel=1e-12)
 
 
 @pytest.mark.parametrize("branch", [1, -1])
@@ -367,10 +369,10 @@ def test_the_jump_of_a_rate_at_an_eccentric_change_point_has_no_gradient(ec, AB,
     """AB + |ec| = BC: |dY/dtheta| is AB + sqrt(AB BC) on one side of the quarter, sqrt(AB BC) - AB beyond."""
     design = {"ec": ec, "AB": AB, "BC": BC, "omega0": 2.0, "branch": branch}
     for name, value in (("V_C", 2.0 * (AB + math.sqrt(AB * BC))), ("s", None)):
-        found = dx.peak(name, **design)
-        assert found["status"] == 2
-        assert value is None or found["value"] == pytest.approx(value, rel=1e-9)
-        assert all(np.isnan(found["gradient"][p]) for p in ("ec", "AB", "BC"))
+        result = dx.peak(name, **design)
+        assert result["status"] == 2
+        assert value is None or result["value"] == pytest.approx(value, rel=1e-9)
+        assert all(np.isnan(result["gradient"][p]) for p in ("ec", "AB", "BC"))
     elsewhere = dx.peak("Y", **design)
     assert elsewhere["status"] == 0
     assert np.isfinite(list(elsewhere["gradient"].values())).all()
@@ -379,10 +381,10 @@ def test_the_jump_of_a_rate_at_an_eccentric_change_point_has_no_gradient(ec, AB,
 @pytest.mark.parametrize("kind", ["absmax", "max"])
 def test_a_rate_that_jumps_at_a_change_point_has_no_gradient(kind):
     """AB = BC in line: Y = AB (cos theta + |cos theta|), so that V_C jumps from -2 AB omega to 0 across."""
-    found = dx.peak("V_C", kind=kind, ec=0.0, AB=np.array([0.3, 0.3]), BC=np.array([0.3, 0.4]), omega0=2.0)
-    assert found["value"][0] == pytest.approx(1.2, rel=1e-9)
-    assert found["status"].tolist() == [2, 0]
-    assert np.isnan(found["gradient"]["AB"]).tolist() == [True, False]
-    assert found["gradient"]["omega0"][0] == pytest.approx(found["value"][0] / 2.0, rel=1e-9)
+    result = dx.peak("V_C", kind=kind, ec=0.0, AB=np.array([0.3, 0.3]), BC=np.array([0.3, 0.4]), omega0=2.0)
+    assert result["value"][0] == pytest.approx(1.2, rel=1e-9)
+    assert result["status"].tolist() == [2, 0]
+    assert np.isnan(result["gradient"]["AB"]).tolist() == [True, False]
+    assert result["gradient"]["omega0"][0] == pytest.approx(result["value"][0] / 2.0, rel=1e-9)
     still = dx.peak("Y", ec=0.0, AB=0.3, BC=0.3)
     assert (still["status"], still["value"], still["gradient"]["AB"]) == (0, 0.6, 1.0)

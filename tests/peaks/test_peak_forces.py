@@ -36,11 +36,11 @@ PRESS = {"m_slider": 1.0, "m_rod": 0.6, "I_rod": 0.004, "g_Y": -9.81}
 def test_an_extremum_next_to_an_angle_from_which_friction_jams(name, kind, ec, AB, BC, omega0, mu, F_Y):
     """Between the last node and the end of the balance: peaks were up to 0.8 % off."""
     design = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "mu": mu, "F_Y": F_Y, **PRESS}
-    found, sign = dx.peak(name, kind=kind, **design), 1.0 if kind == "max" else -1.0
-    exact = [sign * truth(name, theta=found["theta"] + s, **design) for s in (-1e-4, 0.0, 1e-4)]
-    assert sign * found["value"] == pytest.approx(float(exact[1]), rel=1e-11)
+    result, sign = dx.peak(name, kind=kind, **design), 1.0 if kind == "max" else -1.0
+    exact = [sign * truth(name, theta=result["theta"] + s, **design) for s in (-1e-4, 0.0, 1e-4)]
+    assert sign * result["value"] == pytest.approx(float(exact[1]), rel=1e-11)
     assert exact[1] > max(exact[0], exact[2])
-    assert sign * found["value"] >= np.nanmax(sign * dx.evaluate(name, theta=THETA, **design)) - 1e-11
+    assert sign * result["value"] >= np.nanmax(sign * dx.evaluate(name, theta=THETA, **design)) - 1e-11
 
 
 def refined(name, sign, theta, design):
@@ -73,13 +73,13 @@ def test_peaks_with_friction_are_those_of_free_bodies():
         design |= {"F_Y": rng.uniform(-200.0, 200.0), "branch": rng.choice([1, -1]).item()}
         name = rng.choice(["T_in", "N_C", "F_B_Y", "F_A_X"]).item()
         kind, sign = (("max", 1.0), ("min", -1.0))[rng.integers(2)]
-        found = dx.peak(name, kind=kind, **design)
-        if found["status"] in (5, 6):
+        result = dx.peak(name, kind=kind, **design)
+        if result["status"] in (5, 6):
             continue
         theta = np.linspace(0.0, 2.0 * np.pi, 4001)
-        best, value = refined(name, sign, theta, design), sign * found["value"]
+        best, value = refined(name, sign, theta, design), sign * result["value"]
         assert value >= best - 1e-11 * abs(best), seed
-        beside = [sign * truth(name, theta=found["theta"] + s, **design) for s in (-1e-12, 0.0, 1e-12)]
+        beside = [sign * truth(name, theta=result["theta"] + s, **design) for s in (-1e-12, 0.0, 1e-12)]
         assert min(abs(float(exact) - value) for exact in beside) <= 1e-9 * abs(value), seed
 
 
@@ -88,35 +88,35 @@ def test_gradient_with_friction(parameter):
     """Against differences of peaks, also where friction jams at other angles (the last design)."""
     for ec, mu, omega0, status in ((0.01, 0.1, 251.0, 0), (0.02, 0.5, 251.0, 6), (0.02, 1.0, -251.0, 5)):
         design = {**ENGINE, "ec": ec, "mu": mu, "omega0": omega0}
-        found = dx.peak("T_in", **design)
+        result = dx.peak("T_in", **design)
         step = 1e-6 * abs(design[parameter])
         near = design[parameter] + step * np.array([-1.0, 1.0])
         low, high = dx.peak("T_in", **{**design, parameter: near})["value"]
-        assert found["status"] == status
-        assert found["gradient"][parameter] == pytest.approx((high - low) / (2 * step), rel=1e-6)
+        assert result["status"] == status
+        assert result["gradient"][parameter] == pytest.approx((high - low) / (2 * step), rel=1e-6)
 
 
 def test_a_jump_at_the_dead_centre():
     """There friction turns round: the peak is its value on one side, and moves with the design."""
     design = {**ENGINE, "ec": 0.02, "mu": 0.1, "omega0": -251.0}
-    found = dx.peak("F_friction", kind="max", **design)
+    result = dx.peak("F_friction", kind="max", **design)
     dead_centre = math.pi - math.asin(0.02 / (0.064 - 0.04))
-    assert found["theta"] == pytest.approx(dead_centre, abs=1e-12)
+    assert result["theta"] == pytest.approx(dead_centre, abs=1e-12)
     sides = dx.evaluate("F_friction", theta=dead_centre + np.array([-1e-10, 1e-10]), **design)
     assert sides[0] * sides[1] < 0
-    assert found["value"] == pytest.approx(sides.max(), rel=1e-8)
-    assert found["status"] == 2
-    assert all(math.isnan(slope) for slope in found["gradient"].values())
+    assert result["value"] == pytest.approx(sides.max(), rel=1e-8)
+    assert result["status"] == 2
+    assert all(math.isnan(slope) for slope in result["gradient"].values())
 
 
 def test_a_torque_without_bound_where_friction_jams():
     """It jams where mu |tan phi| = 1, and the torque grows without bound towards there."""
-    found = dx.peak("T_in", ec=0.0, mu=1.5, omega0=251.0, **ENGINE)
+    result = dx.peak("T_in", ec=0.0, mu=1.5, omega0=251.0, **ENGINE)
     phi = math.atan(1 / 1.5)
-    assert found["value"] == math.inf
-    assert found["theta"] == pytest.approx(math.asin(0.064 * math.sin(phi) / 0.04), abs=1e-12)
-    assert found["status"] == 5
-    assert all(math.isnan(slope) for slope in found["gradient"].values())
+    assert result["value"] == math.inf
+    assert result["theta"] == pytest.approx(math.asin(0.064 * math.sin(phi) / 0.04), abs=1e-12)
+    assert result["status"] == 5
+    assert all(math.isnan(slope) for slope in result["gradient"].values())
     lowest = dx.peak("T_in", kind="min", ec=0.0, mu=1.5, omega0=251.0, **ENGINE)
     assert math.isfinite(lowest["value"])
     assert lowest["status"] == 5
@@ -125,12 +125,12 @@ def test_a_torque_without_bound_where_friction_jams():
 def test_an_arc_with_one_balance_ends_where_a_second_appears():
     """There the force is finite, and half of what it would be without friction."""
     design = {**ENGINE, "ec": 0.01, "omega0": 251.0}
-    found = dx.peak("N_C", kind="max", mu=1.0, **design)
-    without = dx.evaluate("N_C", theta=found["theta"], **design)
-    assert dx.evaluate("phi", theta=found["theta"], ec=0.01, AB=0.04, BC=0.064) == pytest.approx(math.pi / 4)
-    assert found["value"] == pytest.approx(without / 2, rel=1e-9)
-    assert found["status"] == 5  # elsewhere it jams
-    assert all(math.isnan(slope) for slope in found["gradient"].values())
+    result = dx.peak("N_C", kind="max", mu=1.0, **design)
+    without = dx.evaluate("N_C", theta=result["theta"], **design)
+    assert dx.evaluate("phi", theta=result["theta"], ec=0.01, AB=0.04, BC=0.064) == pytest.approx(math.pi / 4)
+    assert result["value"] == pytest.approx(without / 2, rel=1e-9)
+    assert result["status"] == 5  # elsewhere it jams
+    assert all(math.isnan(slope) for slope in result["gradient"].values())
 
 
 def test_where_two_balances_end_and_jamming_begins_there_is_no_extremum():
@@ -138,17 +138,17 @@ def test_where_two_balances_end_and_jamming_begins_there_is_no_extremum():
     design = {"ec": -0.058501449617742916, "AB": 0.07192560315550124, "BC": 0.16120624679489065}
     design |= {"omega0": -39.171379570360706, "mu": 1.4981931463077875, "F_Y": -300.0, "branch": -1}
     design |= {"m_slider": 2.0, "m_rod": 1.0, "I_rod": 0.004, "g_Y": -9.81}
-    found = dx.peak("F_B_Y", kind="min", **design)
+    result = dx.peak("F_B_Y", kind="min", **design)
     sampled = np.nanmin(dx.evaluate("F_B_Y", theta=THETA, **design))
-    assert sampled * (1.0 - 1e-5) <= found["value"] <= sampled
+    assert sampled * (1.0 - 1e-5) <= result["value"] <= sampled
 
 
 def test_only_where_forces_balance():
     """Within these angles nothing balances once; outside of them nothing is wrong."""
     design = {**ENGINE, "ec": 0.0, "mu": 1.5, "omega0": 251.0}
-    found = dx.peak("T_in", theta=(1.2, 1.4), **design)
-    assert math.isnan(found["value"])
-    assert math.isnan(found["theta"])
-    assert found["status"] in (5, 6)
+    result = dx.peak("T_in", theta=(1.2, 1.4), **design)
+    assert math.isnan(result["value"])
+    assert math.isnan(result["theta"])
+    assert result["status"] in (5, 6)
     assert dx.peak("T_in", theta=(0.0, 1.0), **design)["status"] == 0
     assert dx.peak("a_C", **design)["status"] == 0

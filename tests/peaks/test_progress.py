@@ -23,29 +23,29 @@ def test_long_peaks_tell_what_is_done_and_left(kind, monkeypatch):
     @contextmanager
     def recorded(**options):
         assert options == {"unit": "designs"}
-        yield lambda *told: seen.append(told)
+        yield lambda *message: seen.append(message)
 
     monkeypatch.setattr("desaxe.peaks.designs.progress_bar", recorded)
     monkeypatch.setattr("desaxe.peaks.designs.LARGE", 20)
     for parts in ("USUAL_PART", "COSTLY_PART"):
         monkeypatch.setattr(f"desaxe.peaks.designs.{parts}", (8, 8))
-    wanted = dx.peak("T_in", **GIVEN, **KINDS[kind])
+    expected = dx.peak("T_in", **GIVEN, **KINDS[kind])
     assert seen[0] == (0, 24, "peaks of T_in")
-    done = [told[0] for told in seen]
+    done = [message[0] for message in seen]
     assert len(done) > (3 if kind == "friction" else 1)
     assert done == sorted(done)
     assert done[-1] == 24
     assert seen[-1][2] == "peaks of T_in, about 0 s left"
     seen.clear()
     few = {**GIVEN, "ec": GIVEN["ec"][:10]}
-    assert dx.peak("T_in", **few, **KINDS[kind])["value"] == pytest.approx(wanted["value"][:10], rel=1e-12)
+    assert dx.peak("T_in", **few, **KINDS[kind])["value"] == pytest.approx(expected["value"][:10], rel=1e-12)
     assert not seen
 
 
 def test_what_is_left_follows_from_what_is_done(monkeypatch):
     seen, clock = [], iter([100.0, 101.0, 104.0])
     monkeypatch.setattr(progress, "monotonic", lambda: next(clock))
-    portions = Portions(10, "peaks", lambda *told: seen.append(told))
+    portions = Portions(10, "peaks", lambda *message: seen.append(message))
     portions.add(2)
     portions.add(6)
     assert seen == [(0, 10, "peaks"), (2, 10, "peaks, about 4 s left"), (8, 10, "peaks, about 1 s left")]

@@ -239,25 +239,25 @@ def test_unknown_kind_of_file_leaves_nothing(tmp_path):
 
 def test_curves_of_what_evaluate_gives():
     theta = np.linspace(0, 2 * np.pi, 91)
-    found = dx.evaluate(["V_C", "a_C", "status"], theta=theta, ec=0.15, AB=0.125, BC=0.35, omega0=157.08)
-    (line,) = dx.plot.curves(found, "a_C")
-    np.testing.assert_array_equal(line.get_ydata(), found["a_C"])
+    result = dx.evaluate(["V_C", "a_C", "status"], theta=theta, ec=0.15, AB=0.125, BC=0.35, omega0=157.08)
+    (line,) = dx.plot.curves(result, "a_C")
+    np.testing.assert_array_equal(line.get_ydata(), result["a_C"])
     np.testing.assert_allclose(line.get_xdata(), np.degrees(theta))
     assert "ec = 0.15" in line.axes.get_title(loc="left").replace("\u00a0", " ")
-    (again,) = dx.plot.curves(dict(found), "a_C", theta=theta)
-    np.testing.assert_array_equal(again.get_ydata(), found["a_C"])
+    (again,) = dx.plot.curves(dict(result), "a_C", theta=theta)
+    np.testing.assert_array_equal(again.get_ydata(), result["a_C"])
     with pytest.raises(TypeError, match="a dict does not say theta: give it"):
-        dx.plot.curves(dict(found), "a_C")
+        dx.plot.curves(dict(result), "a_C")
     with pytest.raises(ValueError, match="theta: it varies along one axis of arrays"):
-        dx.plot.curves(dict(found), "a_C", theta=theta[1:])
+        dx.plot.curves(dict(result), "a_C", theta=theta[1:])
 
 
 def test_a_broadcast_is_a_family():
     theta, ec = np.linspace(0, 2 * np.pi, 31), np.array([0.0, 0.1, 0.2])
-    found = dx.evaluate(["V_C"], theta=theta[:, None], ec=ec, AB=0.125, BC=0.35, omega0=157.08)
-    lines = dx.plot.curves(found, "V_C")
+    result = dx.evaluate(["V_C"], theta=theta[:, None], ec=ec, AB=0.125, BC=0.35, omega0=157.08)
+    lines = dx.plot.curves(result, "V_C")
     assert len(lines) == 3
-    np.testing.assert_array_equal(lines[2].get_ydata(), found["V_C"][:, 2])
+    np.testing.assert_array_equal(lines[2].get_ydata(), result["V_C"][:, 2])
 
 
 def test_gaps_are_marked():

@@ -44,8 +44,8 @@ def test_the_edge_is_where_the_margin_is_nought(plane):
 
 def test_over_the_crank_angle_the_edge_is_where_the_rod_ends():
     theta = np.linspace(0, 2 * np.pi, 361)
-    found = dx.grid("a_C", theta=theta, ec=np.linspace(0, 0.4, 41), AB=0.125, BC=0.35, omega0=157.08)
-    axes = design_map(found, "a_C").axes
+    result = dx.grid("a_C", theta=theta, ec=np.linspace(0, 0.4, 41), AB=0.125, BC=0.35, omega0=157.08)
+    axes = design_map(result, "a_C").axes
     x, y = edge_of(axes).T
     np.testing.assert_allclose(y + 0.125 * np.sin(np.radians(x)), 0.35, atol=1e-4)
     assert set(np.diff(axes.get_xticks())) == {45.0}
@@ -55,11 +55,11 @@ def test_friction_that_jams_is_hatched_too():
     """The edge runs between a point with a balance of forces and one without."""
     press = {"ec": 0.02, "AB": 0.04, "BC": 0.064, "omega0": 251.0, "m_slider": 0.8}
     theta, mu = np.linspace(0, 6, 61), np.linspace(0, 2, 21)
-    found = dx.grid("T_in", theta=theta, mu=mu, **press)
-    edge = edge_of(design_map(found, "T_in").axes)
+    result = dx.grid("T_in", theta=theta, mu=mu, **press)
+    edge = edge_of(design_map(result, "T_in").axes)
     assert len(edge) > 20
     for x, y in edge:
-        near = found.status.sel(theta=slice(np.radians(x) - 0.101, np.radians(x) + 0.101))
+        near = result.status.sel(theta=slice(np.radians(x) - 0.101, np.radians(x) + 0.101))
         near = near.sel(mu=slice(y - 0.101, y + 0.101)).values
         assert (near == 0).any()
         assert (near >= 5).any()

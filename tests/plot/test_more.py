@@ -18,11 +18,11 @@ def ends(bars):
     """Label of each row, from the top, and where its bars end: (input smaller, input larger)."""
     larger, smaller = bars
     names = [text.get_text() for text in larger[0].axes.get_yticklabels()]
-    found = [
+    result = [
         (low.get_x() + low.get_width(), high.get_x() + high.get_width())
         for low, high in zip(smaller, larger, strict=True)
     ]
-    return list(zip(names, found, strict=True))[::-1]
+    return list(zip(names, result, strict=True))[::-1]
 
 
 def test_bars_of_a_peak_are_what_happens_to_it():
@@ -54,16 +54,16 @@ def test_bars_of_tolerances():
 
 def test_tornado_on_given_axes_and_complaints():
     axes = Figure().add_subplot()
-    found = dx.peak("a_C", ec=0.15, **MACHINE)
-    assert tornado(found, {"ec": 1e-3}, ax=axes)[0][0].axes is axes
+    result = dx.peak("a_C", ec=0.15, **MACHINE)
+    assert tornado(result, {"ec": 1e-3}, ax=axes)[0][0].axes is axes
     with pytest.raises(ValueError, match="no slope by mu in this result, there are: ec, AB"):
-        tornado(found, {"mu": 0.1})
+        tornado(result, {"mu": 0.1})
     with pytest.raises(TypeError, match="expected a dict with value and gradient"):
         tornado(dx.grid("a_C", theta=1.0, ec=0.1, **MACHINE), {"ec": 1e-3})
     with pytest.raises(ValueError, match="of one design: choose it first"):
         tornado(dx.peak("a_C", ec=[0.1, 0.15], **MACHINE), {"ec": 1e-3})
     with pytest.raises(ValueError, match="ec = '1 kg'"):
-        tornado(found, {"ec": "1 kg"})
+        tornado(result, {"ec": "1 kg"})
 
 
 def test_panels():

@@ -14,17 +14,17 @@ def swing(t, theta, omega):
 
 
 def test_the_histories_and_the_events_of_a_motion():
-    found = dx.Machine(DESIGN, units="m, deg, rpm").simulate(torque=swing, t_end=0.6, names=["V_C"])
-    picture = found.plot()
+    result = dx.Machine(DESIGN, units="m, deg, rpm").simulate(torque=swing, t_end=0.6, names=["V_C"])
+    picture = result.plot()
     assert isinstance(picture, Picture)
     assert list(picture) == ["theta", "omega", "alpha", "V_C"]
     for name, (line,) in picture.artists.items():
-        np.testing.assert_array_equal(line.get_xdata(), found["t"])
-        np.testing.assert_array_equal(line.get_ydata(), found[name])
-    kinds = {event.kind for event in found["events"]}
+        np.testing.assert_array_equal(line.get_xdata(), result["t"])
+        np.testing.assert_array_equal(line.get_ydata(), result[name])
+    kinds = {event.kind for event in result["events"]}
     assert kinds == {"dead centre", "standstill"}
     for line in picture.axes[0].lines[1:]:
-        own = [event for event in found["events"] if event.kind == line.get_label()]
+        own = [event for event in result["events"] if event.kind == line.get_label()]
         assert list(line.get_xdata()) == [event.t for event in own]
         assert list(line.get_ydata()) == [event.theta for event in own]
     assert "rpm" in picture.axes[1].get_ylabel()
@@ -32,41 +32,41 @@ def test_the_histories_and_the_events_of_a_motion():
 
 
 def test_curves_of_a_motion_over_time_and_over_the_angle():
-    found = dx.simulate(torque=swing, t_end=0.6, **DESIGN)
-    (line,) = dx.plot.curves(found, "omega", over="t")
-    np.testing.assert_array_equal(line.get_xdata(), found["t"])
-    (line,) = dx.plot.curves(found, "omega")
-    np.testing.assert_allclose(line.get_xdata(), np.degrees(found["theta"]))
+    result = dx.simulate(torque=swing, t_end=0.6, **DESIGN)
+    (line,) = dx.plot.curves(result, "omega", over="t")
+    np.testing.assert_array_equal(line.get_xdata(), result["t"])
+    (line,) = dx.plot.curves(result, "omega")
+    np.testing.assert_allclose(line.get_xdata(), np.degrees(result["theta"]))
     with pytest.raises(ValueError, match="over 't' or over 'theta'"):
-        dx.plot.curves(found, "omega", over="ec")
+        dx.plot.curves(result, "omega", over="ec")
     with pytest.raises(TypeError, match="draws a result of"):
         dx.plot.motion({"a_C": np.ones(3)})
 
 
 def test_each_of_many_designs_has_its_curve():
     torque = dx.over_omega([0.0, 90.0], [1.0, 0.0])
-    found = dx.simulate(torque=torque, t_end=0.2, **{**DESIGN, "m_slider": [1.0, 2.0, 3.0]})
-    lines = found.plot()["omega"]
+    result = dx.simulate(torque=torque, t_end=0.2, **{**DESIGN, "m_slider": [1.0, 2.0, 3.0]})
+    lines = result.plot()["omega"]
     assert len(lines) == 3
-    np.testing.assert_array_equal(lines[2].get_ydata(), found["omega"][2])
+    np.testing.assert_array_equal(lines[2].get_ydata(), result["omega"][2])
     one = dx.simulate(torque=1.0, t_end=0.2, wrt="theta0", **DESIGN)
     assert list(one.plot())[3:] == ["theta_wrt_theta0", "omega_wrt_theta0"]
     with pytest.raises(ValueError, match="over='t'"):
-        dx.plot.curves(found, "omega")
+        dx.plot.curves(result, "omega")
 
 
 def test_an_axis_does_not_magnify_the_rounding_of_a_level_history():
-    found = dx.simulate(torque=1.2, t_end=0.05, names=["T_in"], **DESIGN)
-    low, high = found.plot().axes[3].get_ylim()
+    result = dx.simulate(torque=1.2, t_end=0.05, names=["T_in"], **DESIGN)
+    low, high = result.plot().axes[3].get_ylim()
     assert (low, high) == pytest.approx((1.14, 1.26), rel=1e-9)
 
 
 def test_a_long_motion_is_drawn_at_instants_of_its_own():
     """1,001 samples of 110 turns show waves that are none; a curve has 60 instants a turn."""
     machine = dx.Machine(DESIGN, units="m, deg, rpm")
-    found = machine.simulate(torque=10.0, t_end=2.0, names=["V_C"])
-    picture = found.plot()
-    turns = found["theta"][-1] / 360.0
+    result = machine.simulate(torque=10.0, t_end=2.0, names=["V_C"])
+    picture = result.plot()
+    turns = result["theta"][-1] / 360.0
     for name in ("theta", "omega", "alpha"):
         t = picture[name][0].get_xdata()
         assert t.size > 60 * turns
@@ -75,10 +75,10 @@ def test_a_long_motion_is_drawn_at_instants_of_its_own():
     np.testing.assert_allclose(np.radians(theta), dense["theta"], rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(omega * np.pi / 30.0, dense["omega"], rtol=1e-8, atol=1e-8)
     size = np.abs(dense["alpha"]).max()
-    np.testing.assert_allclose(np.radians(alpha) if found.units["alpha"] == "deg/s^2" else alpha,
+    np.testing.assert_allclose(np.radians(alpha) if result.units["alpha"] == "deg/s^2" else alpha,
                                dense["alpha"], atol=1e-4 * size)  # fmt: skip
     (line,) = picture["V_C"]
     assert (line.get_linestyle(), line.get_marker()) == ("None", ".")
     (marks,) = picture.axes[0].lines[1:]
     assert marks.get_xdata().size == 0
-    assert marks.get_label() == f"dead centre: {len(found['events'])}, not marked"
+    assert marks.get_label() == f"dead centre: {len(result['events'])}, not marked"

@@ -109,8 +109,8 @@ def test_a_tornado_without_changes_is_of_one_percent():
     picture = PRESS.plot.tornado("T_in")
     peak = PRESS.peak("T_in")
     shown = PRESS.in_units()
-    wanted = {p: 0.01 * shown[p] * slope for p, slope in peak["gradient"].items()}
-    assert ends_of(picture) == {p: pytest.approx(v, rel=1e-9) for p, v in wanted.items()}
+    expected = {p: 0.01 * shown[p] * slope for p, slope in peak["gradient"].items()}
+    assert ends_of(picture) == {p: pytest.approx(v, rel=1e-9) for p, v in expected.items()}
     assert f"largest magnitude of T_in = {peak['value']:.6g} N m at theta = " in title(picture)
     assert "ec = 10 mm" in title(picture)
     centred = PRESS.replace(ec=0)

@@ -89,22 +89,22 @@ def dataset(value: float) -> xr.Dataset:
 def value_of(path: Path) -> float:
     """The common value of all numbers of a result; NaN if the result is not whole."""
     if path.suffix == ".zarr":
-        found = xr.open_zarr(path, consolidated=False).load()
+        result = xr.open_zarr(path, consolidated=False).load()
     elif path.suffix == ".nc":
-        found = xr.load_dataset(path, engine="h5netcdf")
+        result = xr.load_dataset(path, engine="h5netcdf")
     elif path.suffix == ".npz":
         with np.load(path) as arrays:
-            found = xr.Dataset({name: ("x", arrays[name]) for name in arrays.files})
+            result = xr.Dataset({name: ("x", arrays[name]) for name in arrays.files})
     elif path.suffix == ".xlsx":
         book = openpyxl.load_workbook(path)
         head, *rows = book["values"].values
         book.close()
         table = dict(zip(head, np.array(rows, dtype=float).T, strict=True))
-        found = xr.Dataset({name.partition(" ")[0]: ("x", column) for name, column in table.items()})
+        result = xr.Dataset({name.partition(" ")[0]: ("x", column) for name, column in table.items()})
     else:
         rows = np.genfromtxt(path, delimiter=",", names=True, skip_header=1)
-        found = xr.Dataset({name.partition("_")[0]: ("x", rows[name]) for name in rows.dtype.names})
-    numbers = np.stack([found[name].values for name in ("a", "b", "c")])
+        result = xr.Dataset({name.partition("_")[0]: ("x", rows[name]) for name in rows.dtype.names})
+    numbers = np.stack([result[name].values for name in ("a", "b", "c")])
     return float(numbers[0, 0]) if numbers.shape == (3, 2000) and np.ptp(numbers) == 0.0 else float("nan")
 
 
@@ -114,10 +114,10 @@ def killed_while_writing_results(folder: Path, random: Random) -> Verdict:
     number = child(for_ever(lambda value: results.write(place, dataset(value), {}), 2.0, 1.0))
     killed_after(number, random.uniform(0.0, 0.2))
     try:
-        found = value_of(place)
+        result = value_of(place)
     except Exception as error:
         return Verdict(LOST, f"{place.name}: {type(error).__name__}: {error}")
-    if found not in (1.0, 2.0):
+    if result not in (1.0, 2.0):
         return Verdict(WRONG, f"{place.name}: neither the old nor the new result")
     results.write(place, dataset(3.0), {})
     names = [path.name for path in folder.iterdir()]

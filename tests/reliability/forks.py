@@ -91,12 +91,12 @@ def fork_in_first_calls(folder: Path, random: Random) -> Verdict:
         by_thread=random.random() < 0.5,
     )
     code, out, error = run(program, SECONDS + 120.0)
-    told = f"{first}, then {again} after {', '.join(f'{moment:.3f}' for moment in moments)} s"
+    message = f"{first}, then {again} after {', '.join(f'{moment:.3f}' for moment in moments)} s"
     if code is None or "hung" in out:
-        return Verdict(HUNG, f"{told}: {out}")
+        return Verdict(HUNG, f"{message}: {out}")
     if code:
-        return Verdict(CRASHED, f"{told}: {code} {error[-300:]}")
-    return GOOD if out.split() == ["0"] * MOMENTS else Verdict(WRONG, f"{told}: {out} {error[-300:]}")
+        return Verdict(CRASHED, f"{message}: {code} {error[-300:]}")
+    return GOOD if out.split() == ["0"] * MOMENTS else Verdict(WRONG, f"{message}: {out} {error[-300:]}")
 
 
 TRIALS = [Trial(f"{MOMENTS} forks in the first calls of a process", fork_in_first_calls, 0, 50)]

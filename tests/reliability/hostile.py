@@ -355,9 +355,9 @@ def judged(call: str, name: str, value: Any) -> Verdict:
 def verdict_of(what: str, run: Callable[[], Any], value: Any, names: Sequence[str]) -> Verdict:
     """The verdict on a call with this value; a refusal has one of these names in its message."""
     try:
-        told = f"{what} = {value!r:.60}"
+        message = f"{what} = {value!r:.60}"
     except ValueError:
-        told = f"{what} = a huge number"
+        message = f"{what} = a huge number"
     try:
         with within(SECONDS), warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -366,7 +366,7 @@ def verdict_of(what: str, run: Callable[[], Any], value: Any, names: Sequence[st
             warnings.filterwarnings("ignore", ".* goes with the next version", DeprecationWarning)
             run()
     except _Late:
-        return Verdict(HUNG, told)
+        return Verdict(HUNG, message)
     except (ValueError, TypeError, MemoryError, TimeoutError) as error:
         last = traceback.extract_tb(error.__traceback__)[-1]
         ours = "/desaxe/" in last.filename or "/derive/" in last.filename
@@ -381,14 +381,16 @@ def verdict_of(what: str, run: Callable[[], Any], value: Any, names: Sequence[st
         }
         named = any(word in str(error) for word in words) or isinstance(error, (MemoryError, TimeoutError))
         return (
-            GOOD if ours and named else Verdict(CRASHED, f"{told}: {error} ({last.filename}:{last.lineno})")
+            GOOD
+            if ours and named
+            else Verdict(CRASHED, f"{message}: {error} ({last.filename}:{last.lineno})")
         )
     except OSError:  # a text where a scene is wanted is the path of one
         return GOOD
     except Exception as error:
         last = traceback.extract_tb(error.__traceback__)[-1]
         where = f"{last.filename}:{last.lineno}"
-        return Verdict(CRASHED, f"{told}: {type(error).__name__}: {error} ({where})")
+        return Verdict(CRASHED, f"{message}: {type(error).__name__}: {error} ({where})")
     return GOOD
 
 

@@ -140,21 +140,23 @@ def interrupted(folder: Path, random: Random) -> Verdict:
     time.sleep(random.uniform(0.0, 1.5))
     sent = spent(process.pid)
     process.send_signal(signal.SIGINT)
-    told = process.stdout.readline()
+    message = process.stdout.readline()
     more = spent(process.pid) - sent
     try:
         out, error = process.communicate(timeout=120.0)
     except subprocess.TimeoutExpired:
         process.kill()
         process.communicate()
-        return Verdict(HUNG, f"{name}: {told}")
-    stopped = "stopped" in told
-    if not stopped and "done" not in told:
+        return Verdict(HUNG, f"{name}: {message}")
+    stopped = "stopped" in message
+    if not stopped and "done" not in message:
         return Verdict(CRASHED, f"{name}: {error[-300:]}")
     if stopped and "usable" not in out:  # one that came after the end is for the lines behind it
         return Verdict(WRONG, f"{name}: the next call: {error[-300:]}")
     return (
-        GOOD if more < LATE else Verdict(HUNG, f"{name}: {told.strip()} after {more:.1f} s of processor time")
+        GOOD
+        if more < LATE
+        else Verdict(HUNG, f"{name}: {message.strip()} after {more:.1f} s of processor time")
     )
 
 

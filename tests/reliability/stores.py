@@ -127,22 +127,22 @@ def damaged_store(folder: Path, random: Random) -> Verdict:
     path = random.choice(sorted(path for path in root.rglob("*") if path.is_file()))
     damage = random.choice(DAMAGES)
     damage(path, random)
-    told = f"{kind}: {damage.__name__} {path.relative_to(root)}"
+    message = f"{kind}: {damage.__name__} {path.relative_to(root)}"
     for overwrite in (False, True):
         try:
             if sweep(kind, root, overwrite=overwrite).identical(sweep(kind, whole(kind))):
                 continue
-            return Verdict(WRONG, f"{told}: other values, overwrite={overwrite}")
+            return Verdict(WRONG, f"{message}: other values, overwrite={overwrite}")
         except (ValueError, OSError) as error:
             ours = "/desaxe/" in traceback.extract_tb(error.__traceback__)[-1].filename
             if not (ours and str(root) in str(error) and "\n" not in str(error)):
-                return Verdict(CRASHED, f"{told}: {type(error).__name__}: {error}")
+                return Verdict(CRASHED, f"{message}: {type(error).__name__}: {error}")
             if overwrite and "this is no Zarr store" not in str(error):
-                return Verdict(LOST, f"{told}: {error}")
+                return Verdict(LOST, f"{message}: {error}")
         except Exception as error:
-            return Verdict(CRASHED, f"{told}: {type(error).__name__}: {error}")
+            return Verdict(CRASHED, f"{message}: {type(error).__name__}: {error}")
     left = [one.name for one in folder.iterdir() if one != root]
-    return Verdict(WRONG, f"{told}: left {left}") if left else GOOD
+    return Verdict(WRONG, f"{message}: left {left}") if left else GOOD
 
 
 # ---- two at once -----------------------------------------------------------------------------------
@@ -202,9 +202,9 @@ def run_on_a_full_disk(folder: Path, random: Random) -> Verdict:
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120.0)
     *lines, last = done.stderr.splitlines()
     left = set(last.split()[1:]) - {"filler", "press.toml", *([f"values{end}"] if key == "store" else [])}
-    told = f"{key} {end}, {filled} bytes filled: {done.returncode}, left {left}: {done.stderr[-300:]}"
+    message = f"{key} {end}, {filled} bytes filled: {done.returncode}, left {left}: {done.stderr[-300:]}"
     one_line = len(lines) == 1 and lines[0].startswith("desaxe: error: ")
-    return GOOD if done.returncode == 2 and one_line and not left else Verdict(WRONG, told)
+    return GOOD if done.returncode == 2 and one_line and not left else Verdict(WRONG, message)
 
 
 def _has_disks() -> bool:

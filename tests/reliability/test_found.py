@@ -102,14 +102,14 @@ def test_refused_in_words_of_ours(what):
 
 @pytest.mark.parametrize("call", [dx.enclose, dx.optimize])
 def test_time_limits(call):
-    wanted = {
+    expected = {
         dx.enclose: {"name": "a_C", "theta": dx.between(0, 7), **MACHINE, "ec": dx.between(0, 0.2)},
         dx.optimize: {"maximize": "stroke", "over": {"ec": (0.0, 0.1)}, "AB": 0.125, "BC": 0.35},
     }
     with pytest.raises(TimeoutError, match=rf"{call.__name__}: not done within timeout = 0.001 s"):
-        call(**wanted[call], timeout=1e-3)
+        call(**expected[call], timeout=1e-3)
     with pytest.raises(ValueError, match="timeout = -1"):
-        call(**wanted[call], timeout=-1)
+        call(**expected[call], timeout=-1)
 
 
 def test_slow_torques_end_with_what_there_is():
@@ -123,9 +123,9 @@ def test_slow_torques_end_with_what_there_is():
         return 1.0
 
     run_out = [10**7]
-    found = dx.simulate(**{**SIMULATED, "torque": torque, "t_end": 1e9}, timeout=0.2)
-    assert found["status"] == 4
-    assert "timeout = 0.2" in found["message"]
+    result = dx.simulate(**{**SIMULATED, "torque": torque, "t_end": 1e9}, timeout=0.2)
+    assert result["status"] == 4
+    assert "timeout = 0.2" in result["message"]
 
 
 def test_a_pipe_is_no_scene(tmp_path):
@@ -168,9 +168,9 @@ def test_deep_toml(text, tmp_path):
 
 def test_a_peak_where_crank_and_rod_are_as_long_as_the_offset():
     for alpha, value in ((0.0, inf), (-1.0, inf), (-50.0, nan)):  # the last one stalls before it turns
-        found = dx.peak("a_C", AB=0.1, BC=0.1, ec=0.1, omega0=10.0, alpha=alpha)
-        assert found["status"] == 2
-        np.testing.assert_equal(found["value"], value)
+        result = dx.peak("a_C", AB=0.1, BC=0.1, ec=0.1, omega0=10.0, alpha=alpha)
+        assert result["status"] == 2
+        np.testing.assert_equal(result["value"], value)
 
 
 # ---- the range of inputs ---------------------------------------------------------------------------
@@ -194,10 +194,10 @@ def test_values_near_the_ends_of_the_range(inputs, arrays):
     given = {n: np.full(3, v) for n, v in inputs.items()} if arrays else inputs
     if arrays:
         given["BC"][1] = 0.35 * 2.0**10  # the others of an array are not disturbed
-    found = dx.evaluate([*NAMES, "status"], **given)
-    assert np.ravel(found["status"])[0] == 0
+    result = dx.evaluate([*NAMES, "status"], **given)
+    assert np.ravel(result["status"])[0] == 0
     for name, true in truth_all(NAMES, **inputs).items():
-        value = float(np.ravel(found[name])[-1])
+        value = float(np.ravel(result[name])[-1])
         with mpmath.workdps(30):
             off = abs(mpmath.mpf(value) - true) if np.isfinite(value) else 0.0
             assert off <= 1e-12 * abs(true) + 1e-323 or value == float(true), name
@@ -225,12 +225,12 @@ def test_inputs_beyond_the_range_are_refused_by_name(inputs, limit):
             with pytest.raises(ValueError, match=rf"^{name}.*{limit}"):
                 call(**{**design, name: given})
     some = {**design, name: np.array([design[name], value])}
-    found = dx.evaluate(["V_C", "status"], theta=1.0, **some)
+    result = dx.evaluate(["V_C", "status"], theta=1.0, **some)
     over = dx.grid("V_C", theta=[0.5, 1.0], **some)
     top = dx.peak("V_C", **some)
-    assert found["status"].tolist() == over.status.values[-1].tolist() == [0, 4]
+    assert result["status"].tolist() == over.status.values[-1].tolist() == [0, 4]
     assert top["status"][1] == 4
-    assert np.isnan([found["V_C"][1], over.V_C.values[-1, 1], top["value"][1]]).all()
+    assert np.isnan([result["V_C"][1], over.V_C.values[-1, 1], top["value"][1]]).all()
 
 
 LINKS = {"AB": 0.1, "BC": 0.3}

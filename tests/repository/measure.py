@@ -56,8 +56,8 @@ NAMED = {  # a word that nothing else is called -> where it counts
 
 def sources(root: Path, suffix: str = ".py") -> dict[str, str]:
     """Path -> text of the files of `src` and `derive`."""
-    found = (path for room in ("src", "derive") for path in sorted((root / room).rglob(f"*{suffix}")))
-    return {path.relative_to(root).as_posix(): path.read_text(encoding="utf-8") for path in found}
+    result = (path for room in ("src", "derive") for path in sorted((root / room).rglob(f"*{suffix}")))
+    return {path.relative_to(root).as_posix(): path.read_text(encoding="utf-8") for path in result}
 
 
 def code_lines(text: str) -> int:
@@ -102,8 +102,10 @@ def strippers(text: str) -> list[str]:
     """The functions of a file that take annotations out of a text."""
     if not STRIPPED.search(text):
         return []
-    found = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef))
-    return [node.name for node in found if any(STRIPPED.fullmatch(f"'{string}'") for string in strings(node))]
+    result = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef))
+    return [
+        node.name for node in result if any(STRIPPED.fullmatch(f"'{string}'") for string in strings(node))
+    ]
 
 
 def naming(root: Path, word: str, rooms: tuple[str, ...]) -> list[str]:
@@ -135,14 +137,14 @@ def measure(root: Path) -> Iterator[tuple[str, int, list[str]]]:
         yield "  of the middle", len(middle), middle
     yield "files that hold numba text", *_counted([path for path in python if writes_numba(python[path])])
     yield "stubs.py", *_counted([path for path in python if path.endswith("/stubs.py")])
-    found = [f"{path}: {name}" for path, text in python.items() for name in strippers(text)]
-    yield "annotation strippers", *_counted(found)
+    result = [f"{path}: {name}" for path, text in python.items() for name in strippers(text)]
+    yield "annotation strippers", *_counted(result)
     for what, (word, rooms) in NAMED.items():
         yield f"files naming {what}, `{word}`", *_counted(naming(root, word, rooms))
 
 
-def _counted(found: list[str]) -> tuple[int, list[str]]:
-    return len(found), found
+def _counted(result: list[str]) -> tuple[int, list[str]]:
+    return len(result), result
 
 
 def main() -> None:
@@ -150,9 +152,9 @@ def main() -> None:
     parser.add_argument("root", nargs="?", type=Path, default=ROOT, help="a clone (default: this one)")
     parser.add_argument("--files", action="store_true", help="name the files, too")
     options = parser.parse_args()
-    for what, count, found in measure(options.root.resolve()):
+    for what, count, result in measure(options.root.resolve()):
         print(f"{count:7,}  {what}")
-        for name in found if options.files else ():
+        for name in result if options.files else ():
             print(f"{'':11}{name}")
 
 

@@ -102,10 +102,10 @@ def mutants_of(path: str, text: str) -> Iterator[Mutant]:
 
 def drawn(root: Path, seed: int, count: int) -> list[Mutant]:
     """The mutants of a seed; more of them begin with the same ones."""
-    found = []
+    result = []
     for path in sorted((root / "src").rglob("*.py")):
-        found += mutants_of(path.relative_to(root).as_posix(), path.read_text(encoding="utf-8"))
-    return sorted(found, key=lambda one: one.digest(seed))[:count]
+        result += mutants_of(path.relative_to(root).as_posix(), path.read_text(encoding="utf-8"))
+    return sorted(result, key=lambda one: one.digest(seed))[:count]
 
 
 def nearest(root: Path, mutant: Mutant) -> list[str]:

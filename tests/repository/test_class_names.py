@@ -15,4 +15,4 @@ def test_no_two_classes_have_one_name():
                 if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                     places[node.name].append(path.relative_to(ROOT).as_posix())
     assert len(places) > 100
-    assert not {name: found for name, found in places.items() if len(found) > 1}
+    assert not {name: result for name, result in places.items() if len(result) > 1}

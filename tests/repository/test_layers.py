@@ -21,15 +21,15 @@ ROOMS = {
 def imported(source, module, is_package):
     """The modules that the text of a module imports, relative ones by their full names."""
     package = module if is_package else module.rpartition(".")[0]
-    found = set()
+    result = set()
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
+            result |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             base = package.rsplit(".", node.level - 1)[0] if node.level > 1 else package
             start = ".".join(part for part in ((base if node.level else ""), node.module) if part)
-            found |= {f"{start}.{alias.name}" for alias in node.names}
-    return found
+            result |= {f"{start}.{alias.name}" for alias in node.names}
+    return result
 
 
 def modules(room):
@@ -170,7 +170,7 @@ def test_derive_imports_compiler_mechanism_and_support_only():
 def test_the_compiler_and_the_ground_do_not_know_the_mechanism():
     """No symbol of the slider-crank in their code; comments and docstrings may give examples."""
     words = {"ec", "AB", "BC", "omega0", "theta", "a_C", "V_C", "T_in", "N_C", "m_rod", "m_slider"}
-    found = set()
+    result = set()
     for room in ("compiler", "support"):
         for _, path in modules("desaxe"):
             if path.is_relative_to(ROOMS["desaxe"] / room):
@@ -181,8 +181,8 @@ def test_the_compiler_and_the_ground_do_not_know_the_mechanism():
                     if isinstance(node, ast.Constant) and isinstance(node.value, str):
                         said = node.value
                     if said in words:
-                        found.add((path.name, said))
-    assert not found
+                        result.add((path.name, said))
+    assert not result
 
 
 def test_the_oracle_shares_nothing_with_what_it_judges():
@@ -207,11 +207,11 @@ def test_what_one_point_loads_imports_the_standard_library_and_its_own_kind(name
     path = ROOMS["desaxe"].joinpath(*name.split(".")).with_suffix(".py")
     tree = ast.parse(path.read_text(encoding="utf-8"))
     at_top = [node for node in tree.body if isinstance(node, (ast.Import, ast.ImportFrom))]
-    found = imported("\n".join(map(ast.unparse, at_top)), f"desaxe.{name}", is_package=False)
-    assert not [other for other in found if not (is_standard(other) or is_in(other, "desaxe"))]
+    result = imported("\n".join(map(ast.unparse, at_top)), f"desaxe.{name}", is_package=False)
+    assert not [other for other in result if not (is_standard(other) or is_in(other, "desaxe"))]
     assert not [
         other
-        for other in found
+        for other in result
         if is_in(other, "desaxe.evaluation.arrays", "desaxe.runtime.kernels", "desaxe.units.pint_units")
     ]
 

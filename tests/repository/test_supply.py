@@ -31,13 +31,13 @@ def trees():
 
 
 def test_only_known_places_run_text_as_code():
-    found = {
+    result = {
         name
         for name, tree in trees()
         for node in ast.walk(tree)
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("exec", "eval")
     }
-    assert found == RUNS_TEXT
+    assert result == RUNS_TEXT
 
 
 def test_nothing_is_unpickled():

@@ -23,13 +23,13 @@ class Module(NamedTuple):
 
 def modules_of(package: Path) -> dict[str, Module]:
     """Every module of a package by its name."""
-    found = {}
+    result = {}
     for path in sorted(package.rglob("*.py")):
         parts = (package.name, *path.relative_to(package).with_suffix("").parts)
         room = parts[:-1]
         name = ".".join(room if parts[-1] == "__init__" else parts)
-        found[name] = _module(ast.parse(path.read_text(encoding="utf-8")), room)
-    return found
+        result[name] = _module(ast.parse(path.read_text(encoding="utf-8")), room)
+    return result
 
 
 def _module(tree: ast.Module, room: tuple[str, ...]) -> Module:
@@ -101,9 +101,9 @@ class Walk:
                     self._follow(whole[0], part.attr)
 
     def _follow(self, module: str, name: str) -> None:
-        found = self._resolved(module, name)
-        if found is not None and found[1]:
-            self.left.append(found)
+        result = self._resolved(module, name)
+        if result is not None and result[1]:
+            self.left.append(result)
 
     def _resolved(self, module: str, name: str) -> Place | None:
         """The place of a name's definition; a module has the name ""."""

@@ -104,9 +104,9 @@ def test_extended_knows_the_last_double_inside_a_limit_angle():
             for _ in range(3):
                 theta = math.nextafter(theta, away)
                 at = point | {"theta": theta}
-                found = dx.evaluate(["status", "V_C"], accuracy="extended", **at)
+                result = dx.evaluate(["status", "V_C"], accuracy="extended", **at)
                 reached = gap(at) > 0
-                assert (found["status"] == 0) == reached == math.isfinite(found["V_C"]), at
+                assert (result["status"] == 0) == reached == math.isfinite(result["V_C"]), at
 
 
 def just_started(count):
@@ -204,5 +204,5 @@ def test_an_angle_that_extended_cannot_reduce_is_told():
     far = 2e9
     with pytest.raises(ValueError, match=r"theta = 2000000000.0: accuracy='extended' reaches"):
         dx.evaluate("a_C", theta=far, **point)
-    found = dx.evaluate(["a_C", "status"], theta=np.array([1.0, far]), **point)
-    assert (found["status"].tolist(), np.isnan(found["a_C"]).tolist()) == ([0, 4], [False, True])
+    result = dx.evaluate(["a_C", "status"], theta=np.array([1.0, far]), **point)
+    assert (result["status"].tolist(), np.isnan(result["a_C"]).tolist()) == ([0, 4], [False, True])

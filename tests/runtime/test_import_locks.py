@@ -47,13 +47,13 @@ def unguarded(text):
 
 
 def test_every_import_inside_a_function_holds_the_lock():
-    found = {}
+    result = {}
     for path in sorted(ROOT.rglob("*.py")):
         if path.relative_to(ROOT).parts[0] not in OF_COMMANDS and path != DEFINES_THE_LOCK:
             lines = unguarded(path.read_text(encoding="utf-8"))
             if lines:
-                found[str(path.relative_to(ROOT))] = lines
-    assert not found
+                result[str(path.relative_to(ROOT))] = lines
+    assert not result
 
 
 @pytest.mark.parametrize(

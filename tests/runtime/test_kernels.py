@@ -37,19 +37,19 @@ def test_threads_change_no_bit(size):
 def test_an_angle_may_be_far(largest):
     """Its sine is that of the C library; the others of its column keep theirs."""
     theta = np.array([largest, -largest / 3, 1.0])
-    found = dx.evaluate("V_C", theta=theta, ec=np.zeros(3), **SIZES)
-    assert close(found, [dx.evaluate("V_C", theta=t, ec=0.0, **SIZES) for t in theta.tolist()])
+    result = dx.evaluate("V_C", theta=theta, ec=np.zeros(3), **SIZES)
+    assert close(result, [dx.evaluate("V_C", theta=t, ec=0.0, **SIZES) for t in theta.tolist()])
     near = dx.evaluate("V_C", theta=np.array([2.0, 1.0]), ec=np.zeros(2), **SIZES)
-    assert found[2] == near[1]
+    assert result[2] == near[1]
 
 
 def test_one_element_is_as_good_as_a_number():
     theta, ec = columns(3)
-    wanted = dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
+    expected = dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
     one = SIZES | {"AB": np.array([0.125]), "BC": [[0.35]]}
-    found = dx.evaluate("V_C", theta=theta, ec=ec, **one)
-    assert found.shape == (1, 3)
-    assert np.array_equal(found[0], wanted)
+    result = dx.evaluate("V_C", theta=theta, ec=ec, **one)
+    assert result.shape == (1, 3)
+    assert np.array_equal(result[0], expected)
 
 
 STATE = {"theta": 1.1, "ec": 0.01, "AB": 0.125, "BC": 0.35, "omega": -20.0, "alpha": 7.0}
@@ -57,20 +57,20 @@ STATED = ["V_C", "a_C_wrt_omega", "V_C_wrt_theta_omega", "omega_wrt_omega", "sta
 
 
 def test_a_state_has_derivatives_by_omega():
-    found = dx.evaluate(STATED, **STATE)
+    result = dx.evaluate(STATED, **STATE)
     step = 2.0**-20
     up, down = (dx.evaluate("a_C", **STATE | {"omega": -20.0 + s}) for s in (step, -step))
-    assert list(found) == STATED
-    assert math.isclose(found["a_C_wrt_omega"], (up - down) / (2 * step), rel_tol=1e-8)
-    assert found["omega_wrt_omega"] == 1.0
+    assert list(result) == STATED
+    assert math.isclose(result["a_C_wrt_omega"], (up - down) / (2 * step), rel_tol=1e-8)
+    assert result["omega_wrt_omega"] == 1.0
 
 
 def test_a_state_of_arrays():
     omega = np.array([-20.0, 0.0, 3.0])
-    found = dx.evaluate(STATED, **STATE | {"omega": omega})
+    result = dx.evaluate(STATED, **STATE | {"omega": omega})
     for index, speed in enumerate(omega.tolist()):
         one = dx.evaluate(STATED, **STATE | {"omega": speed})
-        assert all(math.isclose(found[q][index], one[q], rel_tol=1e-14, abs_tol=1e-15) for q in STATED)
+        assert all(math.isclose(result[q][index], one[q], rel_tol=1e-14, abs_tol=1e-15) for q in STATED)
 
 
 def test_a_state_fills_out_by_its_own_names():

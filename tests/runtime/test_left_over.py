@@ -96,9 +96,9 @@ def test_forces_and_a_given_state():
     theta, ec, AB, BC = np.array(points).T
     inside = np.array([reaches(*point) for point in points])
     loads = {"m_rod": 0.5, "m_slider": 1.0, "mu": 0.05}
-    got = dx.evaluate(["status", "T_in"], theta=theta, ec=ec, AB=AB, BC=BC, omega=2.0, **loads)
-    np.testing.assert_array_equal(got["status"] == 1, ~inside)
-    assert np.isnan(got["T_in"][~inside]).all()
+    result = dx.evaluate(["status", "T_in"], theta=theta, ec=ec, AB=AB, BC=BC, omega=2.0, **loads)
+    np.testing.assert_array_equal(result["status"] == 1, ~inside)
+    assert np.isnan(result["T_in"][~inside]).all()
 
 
 def test_what_is_decided_in_the_kernel_is_left_alone(monkeypatch):

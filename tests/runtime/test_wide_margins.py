@@ -85,14 +85,14 @@ def test_a_point_that_a_kernel_cannot_compute_is_told(name, value):
     columns = {"theta": rng.uniform(-7, 7, 1_100), "ec": rng.uniform(-0.05, 0.05, 1_100)}
     columns |= {"AB": rng.uniform(0.1, 0.15, 1_100), "BC": rng.uniform(0.17, 0.4, 1_100)}
     columns[name][700] = value
-    found = dx.evaluate(names, **columns, omega0=3.0)
+    result = dx.evaluate(names, **columns, omega0=3.0)
     if value > 1e60:
-        assert found["status"][700] == 4
-        assert np.isnan(found["a_C"][700])
+        assert result["status"][700] == 4
+        assert np.isnan(result["a_C"][700])
         return
     alone = dx.evaluate(names, **{n: float(column[700]) for n, column in columns.items()}, omega0=3.0)
     for each in names:
-        assert found[each][700] == pytest.approx(alone[each], rel=1e-12, abs=0.0, nan_ok=True)
+        assert result[each][700] == pytest.approx(alone[each], rel=1e-12, abs=0.0, nan_ok=True)
 
 
 def test_what_has_one_form_is_not_asked_twice():

@@ -91,8 +91,8 @@ def is_one_page(text):
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
     path = tmp_path_factory.mktemp("report") / "new" / "press.html"
-    told = LOADED.report(path, ["T_in", "stroke"], theta=FEW, title=HOSTILE)
-    assert told == path
+    message = LOADED.report(path, ["T_in", "stroke"], theta=FEW, title=HOSTILE)
+    assert message == path
     return is_one_page(path.read_text(encoding="utf-8"))
 
 
@@ -203,13 +203,13 @@ def test_tolerances(tmp_path):
     rough = {"ec": 0.1, "AB": "0.05 mm"}
     path = PRESS.report(tmp_path / "a.html", "stroke", tolerances=rough)
     page = is_one_page(path.read_text(encoding="utf-8"))
-    wanted = PRESS.tolerance("stroke", ec="10 mm +- 0.1 mm", AB="50 mm +- 0.05 mm")
+    expected = PRESS.tolerance("stroke", ec="10 mm +- 0.1 mm", AB="50 mm +- 0.05 mm")
     ((_, value, unit, std, worst, driven),) = [
         row for row in page.rows if row[:1] == ["stroke"] and len(row) == 6
     ]
-    assert (value, unit) == (f"{wanted['value']:.6g}", "mm")
-    assert float(std) == pytest.approx(wanted["monte_carlo"]["std"], rel=0.15)
-    assert worst.startswith(f"{wanted['worst_case']['lower']:.6g} to {wanted['worst_case']['upper']:.6g}")
+    assert (value, unit) == (f"{expected['value']:.6g}", "mm")
+    assert float(std) == pytest.approx(expected["monte_carlo"]["std"], rel=0.15)
+    assert worst.startswith(f"{expected['worst_case']['lower']:.6g} to {expected['worst_case']['upper']:.6g}")
     assert driven.startswith("AB ")
     said = "".join(page.words)
     assert "With ec +- 0.1 mm, AB +- 0.05 mm" in said
@@ -266,10 +266,10 @@ def test_places_and_complaints(tmp_path, monkeypatch):
 
 def test_pictures_that_are_too_large_are_left_out(tmp_path):
     image = Image("many curves", "png", bytes(1_000_000))
-    found = Document("d", [Section("s", [image, image, Text("t" * 400_000)])])
+    result = Document("d", [Section("s", [image, image, Text("t" * 400_000)])])
     for name, form in (("a.html", html), ("a.md", markdown)):
-        text = write_document(found, tmp_path / name).read_text(encoding="utf-8")
-        assert len(text.encode()) <= 2_000_000 < len(form(found).encode())
+        text = write_document(result, tmp_path / name).read_text(encoding="utf-8")
+        assert len(text.encode()) <= 2_000_000 < len(form(result).encode())
         assert "many curves: left out, a report has at most 2 MB" in text
 
 
@@ -292,7 +292,7 @@ def test_the_command_line(tmp_path, monkeypatch, capsys):
     assert main(words) == 2
     assert "out/page.html exists and was not written by desaxe" in capsys.readouterr().err
     assert main([*words, "--overwrite"]) == 0
-    for bad, told in (
+    for bad, message in (
         (["--report", "a.txt"], "a.txt: a report is written as .html or .md"),
         (["--report", "\x1b[2Ja.txt"], "\\x1b[2Ja.txt: a report is written"),
         (["--report", "./b.md", "--tolerance", "ec"], "--tolerance ec: expected INPUT=HALF"),
@@ -301,5 +301,5 @@ def test_the_command_line(tmp_path, monkeypatch, capsys):
     ):
         capsys.readouterr()
         assert main(["run", "press.toml", *bad]) == 2
-        assert told in capsys.readouterr().err
+        assert message in capsys.readouterr().err
     assert not Path("b.md").exists()

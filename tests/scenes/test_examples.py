@@ -21,7 +21,7 @@ def feeder(tmp_path_factory):
 
 
 def test_feeder_against_what_paper_b_prints(feeder):
-    verdicts = [(found.check.source, found.agrees) for found in feeder[1].checks]
+    verdicts = [(result.check.source, result.agrees) for result in feeder[1].checks]
     right = [("paper B", True)] * 2 + [("existing model", True)] * 2
     assert verdicts == right + [("this model", False)] * 2
 
@@ -31,17 +31,17 @@ def test_feeder_has_the_torque_of_its_mechanism(feeder):
     """Over a turn at constant speed the drive does no work; the peaks are those of a fine sweep."""
     torque = feeder[1].dataset.T_in
     assert np.abs(torque.values[:, :-1].mean(axis=1)).max() < 1e-9 * float(np.abs(torque).max())
-    found = feeder[1].peaks[0].dataset
+    result = feeder[1].peaks[0].dataset
     design = {"AB": 0.04, "BC": 0.064, "omega0": 80 * np.pi}
     masses = {"m_rod": 0.5, "m_slider": 0.8, "I_rod": 0.5 * 0.064**2 / 12}
     for ec in (0.0, 0.01, 0.02):
         fine = dx.evaluate("T_in", theta=np.linspace(0, 2 * np.pi, 20_001), ec=ec, **design, **masses)
-        assert float(found.value.sel(ec=ec)) == pytest.approx(np.abs(fine).max(), rel=1e-6)
+        assert float(result.value.sel(ec=ec)) == pytest.approx(np.abs(fine).max(), rel=1e-6)
     step = 1e-6
     heavier, lighter = (
         dx.peak("T_in", ec=0.02, **design, **{**masses, "m_slider": 0.8 + d})["value"] for d in (step, -step)
     )
-    slope = float(found.value_wrt_m_slider.sel(ec=0.02))
+    slope = float(result.value_wrt_m_slider.sel(ec=0.02))
     assert slope == pytest.approx((heavier - lighter) / (2 * step), rel=1e-6)
 
 

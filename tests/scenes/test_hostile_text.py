@@ -73,9 +73,9 @@ def plain(tmp_path_factory):
 @pytest.mark.thorough
 @pytest.mark.parametrize("title", TITLES.values(), ids=TITLES)
 def test_source_in_every_language(title, plain, tmp_path):
-    found = compiled(title, tmp_path / "hostile")
-    assert found.keys() == plain.keys()
-    for path, text in found.items():
+    result = compiled(title, tmp_path / "hostile")
+    assert result.keys() == plain.keys()
+    for path, text in result.items():
         other = plain[path]
         if path.suffix == ".py":  # the same statements: only docstrings differ
             assert without_docstrings(text) == without_docstrings(other)

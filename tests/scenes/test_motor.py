@@ -44,22 +44,27 @@ def test_the_steady_states_of_a_scene_are_those_of_the_call():
 
 
 def test_the_flywheel_for_a_fluctuation():
-    wanted = {"torque": {"kloss": KLOSS}, "fluctuation": [0.02]}
-    scene = {**SCENE, "mechanism": {"AB": 50, "BC": 200, "ec": 10}, "loads": {"F_Y": -900}, "steady": wanted}
-    found = dx.scene(scene).run().steady.dataset
-    assert found["flywheel_inertia"].dims == ("fluctuation",)
+    expected = {"torque": {"kloss": KLOSS}, "fluctuation": [0.02]}
+    scene = {
+        **SCENE,
+        "mechanism": {"AB": 50, "BC": 200, "ec": 10},
+        "loads": {"F_Y": -900},
+        "steady": expected,
+    }
+    result = dx.scene(scene).run().steady.dataset
+    assert result["flywheel_inertia"].dims == ("fluctuation",)
     motor = dx.kloss(40.0, 0.15, "1500 rpm", 12)
     known = dx.steady(torque=motor, fluctuation=0.02, **dx.Machine(scene))
-    assert float(found["flywheel_inertia"][0]) == pytest.approx(known["flywheel_inertia"], rel=1e-12)
+    assert float(result["flywheel_inertia"][0]) == pytest.approx(known["flywheel_inertia"], rel=1e-12)
 
 
 def test_a_motor_of_points_and_a_number():
     points = {"over_omega": [[0, 300], ["90 rpm", 450], [110, -200]], "kind": "smooth"}
     one = {**SCENE, "mechanism": {"AB": 50, "BC": 200, "ec": 10}, "steady": {"torque": points}}
-    found = dx.scene(one).run().steady
+    result = dx.scene(one).run().steady
     motor = dx.over_omega([0, "90 rpm", "110 rpm"], [300, 450, -200], kind="smooth")
     known = dx.steady(torque=motor, **dx.Machine(one))
-    assert found.found["omega_mean"] == pytest.approx(known["omega_mean"], rel=1e-12)
+    assert result.found["omega_mean"] == pytest.approx(known["omega_mean"], rel=1e-12)
     weak = dx.scene({**one, "steady": {"torque": 3}}).run()
     assert weak.steady.dataset["status"] == 1
     assert "too weak" in weak.report()
@@ -76,9 +81,9 @@ def test_a_machine_writes_the_motor_into_its_scene(tmp_path):
             == motor
             == press.scene("Y", steady={"torque": motor}).content.steady.torque
         )
-        found = again.run().steady.found
+        result = again.run().steady.found
         own = press.steady(torque=motor, flywheel_inertia=3)["omega_mean"]
-        assert found["omega_mean"] * 30 / pi == pytest.approx(own, rel=1e-12)
+        assert result["omega_mean"] * 30 / pi == pytest.approx(own, rel=1e-12)
 
 
 def test_the_page_has_table_and_picture(tmp_path, capsys):
@@ -118,11 +123,11 @@ def test_a_motor_is_read_from_a_file_as_loads_are_and_swept_into_a_store(tmp_pat
     monkeypatch.chdir(tmp_path)
     for form in ('over_omega = "heading.csv"', 'over_omega = "bare.csv", omega = "rpm", torque = "N m"'):
         scene.write_text(text + "{" + form + ', kind = "smooth"}\n')
-        found = dx.scene(scene).run().steady
-        assert found.asked.torque == known
+        result = dx.scene(scene).run().steady
+        assert result.asked.torque == known
         back = xarray.open_zarr("press.zarr", group="steady")
         assert back["omega_mean"].dims == ("steady_BC", "steady_flywheel_inertia")
-        np.testing.assert_array_equal(back["omega_mean"], found.dataset["omega_mean"])
+        np.testing.assert_array_equal(back["omega_mean"], result.dataset["omega_mean"])
 
 
 @pytest.mark.parametrize(
@@ -192,9 +197,9 @@ def test_a_torque_over_the_angle_drives_the_machine_of_a_scene():
     """A damper takes the work of a turn: the mean of a linear table, which repeats, times 2 pi."""
     torque = dx.over_theta(["0 deg", "90 deg", "180 deg", "270 deg"], [3, 6, 3, 1], "linear")
     pump = dx.Machine(ec=0.0, AB=0.05, BC=0.2, m_slider=2, I_crank=0.5, F_Y=dx.damper(linear=30.0))
-    found = pump.scene((), steady={"torque": torque}).run().steady.found
-    assert found["status"] == 0
-    assert found["work"] == pytest.approx(2 * np.pi * (3 + 6 + 3 + 1) / 4, rel=1e-9)
+    result = pump.scene((), steady={"torque": torque}).run().steady.found
+    assert result["status"] == 0
+    assert result["work"] == pytest.approx(2 * np.pi * (3 + 6 + 3 + 1) / 4, rel=1e-9)
 
 
 @pytest.mark.parametrize("place", ["loads.mu", "loads.F_Y"])

@@ -81,13 +81,13 @@ def values_of(name, outputs, machine):
     """The quantities over the motion by `grid`, in the units of the machine."""
     theta = np.radians(np.linspace(0, 720 if name == "two turns" else 360, 73))
     with using(machine.definitions):
-        found = dx.grid(list(outputs), theta=theta, **machine)
-    return {n: machine.units.of(n).shown(found[n].transpose("theta", ...).values) for n in outputs}
+        result = dx.grid(list(outputs), theta=theta, **machine)
+    return {n: machine.units.of(n).shown(result[n].transpose("theta", ...).values) for n in outputs}
 
 
-def assert_same(found, known):
+def assert_same(result, known):
     known = np.asarray(known, float)
-    np.testing.assert_allclose(np.asarray(found, float), known, 1e-12, 1e-12 * np.abs(known).max())
+    np.testing.assert_allclose(np.asarray(result, float), known, 1e-12, 1e-12 * np.abs(known).max())
 
 
 def test_values(case, command):
@@ -119,10 +119,10 @@ def test_peaks(case, command):
     theta = np.linspace(0, 720 if name == "two turns" else 360, 20_001)
     fine = np.abs(machine.grid(["T_in"], theta=theta)["T_in"].transpose("theta", ...).values).max(0)
     np.testing.assert_allclose(known["value"], fine, 1e-5)
-    for found in dx.scene(path).run().peaks:
-        assert_same(found.dataset["value"], known["value"])
-        assert_same(found.dataset["theta"], known["theta"])
-        assert_same(found.dataset["value_wrt_ec"], known["gradient"]["ec"])
+    for result in dx.scene(path).run().peaks:
+        assert_same(result.dataset["value"], known["value"])
+        assert_same(result.dataset["theta"], known["theta"])
+        assert_same(result.dataset["value_wrt_ec"], known["gradient"]["ec"])
     if name != DESIGNS:
         assert_same(command("peak", "T_in", "--machine", path)["value"], known["value"])
         assert_same(
@@ -144,15 +144,15 @@ def test_cycles_and_fits(case, command):
     for call, words in (("drive", ["fluctuation=0.03"]), ("harmonics", ["T_in"]), ("counterweight", [])):
         options = {"fluctuation": 0.03} if call == "drive" else {}
         known = getattr(machine, call)(*(["T_in"] if call == "harmonics" else []), **options)
-        found = command(call, *words, "--machine", path)
+        result = command(call, *words, "--machine", path)
         for key, value in known.items():
             if isinstance(value, float) and math.isfinite(value):
-                assert_same(found[key], value)
+                assert_same(result[key], value)
     theta = np.arange(0, 720 if name == "two turns" else 360, 17)
     rows = zip(theta, machine.evaluate("T_in", theta=theta), strict=True)
     path.with_name("run.csv").write_text("theta [deg],T_in [N m]\n" + "".join(f"{a},{b}\n" for a, b in rows))
-    found = command("fit", "run.csv", "over.m_slider=1:9", "sigma.T_in=1", "--machine", path)
-    assert found["value"]["m_slider"] == pytest.approx(4.0, rel=1e-6)
+    result = command("fit", "run.csv", "over.m_slider=1:9", "sigma.T_in=1", "--machine", path)
+    assert result["value"]["m_slider"] == pytest.approx(4.0, rel=1e-6)
     torque = re.search(r"torque, mean \| (\S+) N m", _report(machine))[1]
     assert float(torque) == pytest.approx(machine.drive()["torque_mean"], rel=1e-5, abs=1e-9)
 

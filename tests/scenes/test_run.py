@@ -169,9 +169,9 @@ def test_a_peak_of_a_derivative_by_a_speed_that_has_no_effect():
         "motion": state,
         "peak": peak,
     }
-    found = dx.scene(scene).run().peaks[0].dataset
+    result = dx.scene(scene).run().peaks[0].dataset
     alone = dx.peak("V_C_wrt_omega", AB=0.1, BC=0.3, ec=0.0, omega=10.0, theta=(0.0, 1.0))["value"]
-    assert found.value.values.tolist() == [alone, alone]
+    assert result.value.values.tolist() == [alone, alone]
 
 
 def test_accuracy_reaches_values_peaks_and_checks():
@@ -250,28 +250,28 @@ def test_progress_bar(monkeypatch):
     ],
 )
 def test_long_works_show_progress(monkeypatch, place, call, shown):
-    told, expected = [], repr(call())
+    message, expected = [], repr(call())
 
     @contextmanager
     def bar(**options):
-        yield lambda done, total, what: told.append((done, total, what))
+        yield lambda done, total, what: message.append((done, total, what))
 
     monkeypatch.setattr(f"{place}.progress_bar", bar)
     assert repr(call()) == expected
-    assert shown in {what for _, _, what in told}
-    assert all(0 <= done < total for done, total, _ in told)
+    assert shown in {what for _, _, what in message}
+    assert all(0 <= done < total for done, total, _ in message)
 
 
 def test_a_scene_that_is_run_in_python_shows_its_progress(monkeypatch):
-    told = []
+    message = []
 
     @contextmanager
     def bar():
-        yield lambda done, total, what: told.append(what)
+        yield lambda done, total, what: message.append(what)
 
     monkeypatch.setattr("desaxe.scenes.scene.progress_bar", bar)
     dx.Machine(ec=0.0, AB=0.1, BC=0.3).scene("Y", theta=[0.0, 1.0]).run()
-    assert told == ["values", ""]
+    assert message == ["values", ""]
 
 
 @pytest.mark.parametrize("text", ["29.5 rad/s", "-20.2 m/s", "-7740 rad/s2", "-994 m/s2"])
@@ -283,7 +283,7 @@ def test_test_cases_of_paper_a(compactor, text):
 
 
 def test_peaks(compactor):
-    absolute, largest, velocity = (found.dataset for found in compactor[1].peaks)
+    absolute, largest, velocity = (result.dataset for result in compactor[1].peaks)
     theta = np.linspace(0, 2 * np.pi, 20001)
     for ec in (0.15, 0.22):
         point = {"theta": theta, "ec": ec, "AB": 0.125, "BC": 0.35, "omega0": 50 * math.pi}
@@ -301,7 +301,7 @@ def test_peaks(compactor):
 
 
 def test_claims(compactor):
-    absolute, largest, velocity = (found.claims[0] for found in compactor[1].peaks)
+    absolute, largest, velocity = (result.claims[0] for result in compactor[1].peaks)
     assert absolute.computed == pytest.approx(9.99, abs=0.005)
     assert largest.computed == pytest.approx(95.38, abs=0.005)
     assert velocity.computed == pytest.approx(33.37, abs=0.005)
@@ -312,8 +312,8 @@ def test_two_angles_share_a_peak_at_ec_0(compactor):
     """There is a kink over ec: one angle's derivative is +, the other's -."""
     absolute, largest, velocity = compactor[1].peaks
     assert not absolute.mirrored.any()
-    for found in (largest, velocity):
-        assert found.mirrored.tolist() == [True, *[False] * 9]
+    for result in (largest, velocity):
+        assert result.mirrored.tolist() == [True, *[False] * 9]
     assert "+-20.55" in str(compactor[1])
 
 
@@ -335,10 +335,10 @@ def test_peak_over_two_axes_and_part_of_a_turn():
 
 
 def test_feasibility(compactor):
-    found = compactor[1].feasibility
-    assert (found.turning, found.designs) == (23, 24)
-    assert found.limit == pytest.approx(0.225)
-    (bad,) = found.infeasible
+    result = compactor[1].feasibility
+    assert (result.turning, result.designs) == (23, 24)
+    assert result.limit == pytest.approx(0.225)
+    (bad,) = result.infeasible
     assert bad.design["ec"] == 0.23
     (low, high) = bad.gaps[0]
     assert math.degrees(low) == pytest.approx(73.74, abs=0.005)
@@ -439,9 +439,9 @@ def test_what_friction_does_to_peaks_is_told():
 
 def test_peaks_of_what_the_lengths_do_not_change():
     data = {**SMALL, "outputs": [], "peak": [{"quantity": "V_B"}]}
-    found = dx.scene(data).run().peaks[0].dataset
-    assert found.value.values == pytest.approx([0.125 * 50 * math.pi] * 2)
-    assert [name for name in found if name.startswith("value_wrt_")] == ["value_wrt_AB", "value_wrt_omega0"]
+    result = dx.scene(data).run().peaks[0].dataset
+    assert result.value.values == pytest.approx([0.125 * 50 * math.pi] * 2)
+    assert [name for name in result if name.startswith("value_wrt_")] == ["value_wrt_AB", "value_wrt_omega0"]
 
 
 def test_files_are_whole_or_not_there(tmp_path, monkeypatch):

@@ -44,14 +44,14 @@ def test_examples(path):
 
 def test_every_input_tells_its_unit():
     keys = json_schema()["properties"]
-    told = {
+    message = {
         name: rule["title"]
         for section in ("mechanism", "motion", "masses", "loads")
         for name, rule in keys[section]["properties"].items()
         if name != "branch"
     }
-    assert set(told) == set(INPUTS)
-    assert all(f"[{INPUTS[name].unit}]" in text for name, text in told.items())
+    assert set(message) == set(INPUTS)
+    assert all(f"[{INPUTS[name].unit}]" in text for name, text in message.items())
 
 
 GOOD = {

@@ -37,10 +37,10 @@ def test_kinetic_energy_is_the_work_of_torque_and_load(kind):
         load = dx.over_Y(places.tolist(), rng.uniform(-60, 60, count).tolist(), kind=kind)
         given = {**LENGTHS, **MASSES, "ec": rng.uniform(-0.02, 0.02)}
         torque, theta0, speed = rng.uniform(-2, 2), rng.uniform(0, 6), rng.choice((-30.0, 30.0))
-        found = dx.simulate(
+        result = dx.simulate(
             torque=torque, t_end=0.3, theta0=theta0, omega_start=speed, F_Y=load, rtol=1e-10, **given
         )
-        theta, omega = found["theta"][[0, -1]], found["omega"][[0, -1]]
+        theta, omega = result["theta"][[0, -1]], result["omega"][[0, -1]]
         there = dx.evaluate(["kinetic_energy", "Y"], theta=theta, omega=omega, alpha=0.0, **given)
         before, after = there["kinetic_energy"]
         done = torque * (theta[1] - theta[0]) + work(load, *there["Y"])

@@ -83,8 +83,8 @@ def test_work_of_a_load_over_the_slider_up_to_limit_angles():
     """The integral of the load from Y at the start to AB cos theta of one of the limit angles."""
     places, force = np.linspace(-0.4, 0.4, 9), np.random.default_rng(2).uniform(-30.0, 30.0, 9)
     designs = {**drawn(cases(40, 200, 2_000), 5), "torque": 0.0, "F_Y": dx.over_Y(places, force)}
-    found = dx.simulate(t_end=2.0, times=[2.0], **designs)
-    limit = found["status"] == 2
+    result = dx.simulate(t_end=2.0, times=[2.0], **designs)
+    limit = result["status"] == 2
     assert limit.sum() >= 3
     AB, ec, BC, theta0 = (designs[name][limit] for name in ("AB", "ec", "BC", "theta0"))
     sums = np.append(0.0, np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(places)))
@@ -97,7 +97,7 @@ def test_work_of_a_load_over_the_slider_up_to_limit_angles():
     ends = np.sqrt(np.where(np.abs(sines) <= 1.0, 1.0 - sines**2, np.nan)) * AB
     start = dx.evaluate("Y", theta=theta0, AB=AB, ec=ec, BC=BC)
     ways = integral(np.nan_to_num(np.concatenate([ends, -ends]), nan=9.0)) - integral(start)
-    assert np.abs(ways - found["work"][limit]).min(axis=0).max() < 1e-9
+    assert np.abs(ways - result["work"][limit]).min(axis=0).max() < 1e-9
 
 
 def test_no_digit_hangs_on_the_other_designs():
@@ -117,15 +117,15 @@ def test_the_end_at_an_angle_among_many():
     many = dx.simulate(**call, wrt=["torque", "theta0", "m_slider"], **design)
     assert (np.diff(many["t_last"]) > 0.0).all()
     np.testing.assert_allclose(many["work"], 1.5, rtol=1e-12)
-    for p, wanted in (("torque", 3.0), ("theta0", -0.5), ("m_slider", 0.0)):
-        np.testing.assert_allclose(many[f"work_wrt_{p}"], wanted, rtol=0.0, atol=1e-11)
+    for p, expected in (("torque", 3.0), ("theta0", -0.5), ("m_slider", 0.0)):
+        np.testing.assert_allclose(many[f"work_wrt_{p}"], expected, rtol=0.0, atol=1e-11)
 
 
 def test_a_swing_stops_where_its_energy_is_spent():
     """Up and down under gravity: where potential energy is that of the start, once every half period."""
     start = {"torque": 0.0, "theta0": 2.0, "omega_start": 0.7, "g_Y": -9.81}
-    found = dx.simulate(t_end=20.0, rtol=1e-12, **start, **MACHINE)
-    stops = [event for event in found["events"] if event.kind == "standstill"]
+    result = dx.simulate(t_end=20.0, rtol=1e-12, **start, **MACHINE)
+    stops = [event for event in result["events"] if event.kind == "standstill"]
     assert len(stops) > 20
     at = {"alpha": 0.0, "g_Y": -9.81, **MACHINE}
     names = ["kinetic_energy", "potential_energy"]
@@ -147,8 +147,8 @@ def test_a_swing_stops_where_its_energy_is_spent():
 )
 def test_rounding_is_not_told_as_an_energy_residual(call):
     """An angle that hardly moves, or next to a limit angle, has few digits: a smaller rtol is of no use."""
-    found = dx.simulate(**{**MACHINE, "torque": 1.0, **call})
-    assert "energy_residual" not in found["message"]
+    result = dx.simulate(**{**MACHINE, "torque": 1.0, **call})
+    assert "energy_residual" not in result["message"]
 
 
 def test_speeds_beyond_every_double_end_with_a_status():
@@ -160,9 +160,9 @@ def test_speeds_beyond_every_double_end_with_a_status():
 def test_histories_begin_as_the_motion_does(theta0, ec):
     start = {"theta0": -theta0 if ec > 0.1 and theta0 < 1e5 else theta0, "omega_start": 0.3}
     for torque in (1.0, -0.7):
-        found = dx.simulate(**{**MACHINE, "ec": ec, "torque": torque, "t_end": 1e-3, **start})
-        assert (found["theta"][0], found["omega"][0]) == tuple(start.values())
-        assert found["solution"](0.0) == {"theta": start["theta0"], "omega": 0.3}
+        result = dx.simulate(**{**MACHINE, "ec": ec, "torque": torque, "t_end": 1e-3, **start})
+        assert (result["theta"][0], result["omega"][0]) == tuple(start.values())
+        assert result["solution"](0.0) == {"theta": start["theta0"], "omega": 0.3}
 
 
 def test_many_pieces_and_too_many():
@@ -216,15 +216,15 @@ def test_thousands_of_turns_are_the_sum_of_each(torque, omega, count):
     t, end, _ = turn_by_turn(torque, omega, count)
     designs = {n: np.full(2, v) for n, v in DESIGN.items()}
     call = {"torque": torque, "omega_start": omega, "t_end": t, "times": [t], "max_steps": 10**6}
-    found = dx.simulate(**call, rtol=1e-12, **designs)
-    assert found["status"].tolist() == [0, 0]
-    np.testing.assert_allclose(found["theta"][:, 0], TURN * count, rtol=1e-12)
-    np.testing.assert_allclose(found["omega"][:, 0], end, rtol=1e-9)
+    result = dx.simulate(**call, rtol=1e-12, **designs)
+    assert result["status"].tolist() == [0, 0]
+    np.testing.assert_allclose(result["theta"][:, 0], TURN * count, rtol=1e-12)
+    np.testing.assert_allclose(result["omega"][:, 0], end, rtol=1e-9)
 
 
 def test_the_derivatives_after_many_turns_are_sums_over_each():
     t, _, slopes = turn_by_turn(1.5, 60.0, 60)
     call = {"torque": 1.5, "omega_start": 60.0, "t_end": t, "times": [t], "rtol": 1e-12}
-    found = dx.simulate(**call, wrt=list(slopes), **DESIGN)
+    result = dx.simulate(**call, wrt=list(slopes), **DESIGN)
     for p, truth in slopes.items():
-        np.testing.assert_allclose(found[f"theta_wrt_{p}"], truth, rtol=1e-11)
+        np.testing.assert_allclose(result[f"theta_wrt_{p}"], truth, rtol=1e-11)

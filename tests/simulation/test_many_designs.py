@@ -24,8 +24,8 @@ def one(result, row):
 
 def alone(design, t, **more):
     """The histories of a design on its own."""
-    found = dx.simulate(t_end=t[-1], times=t, **{**design, **more})
-    return found, [found[name] for name in ("theta", "omega", "alpha")]
+    result = dx.simulate(t_end=t[-1], times=t, **{**design, **more})
+    return result, [result[name] for name in ("theta", "omega", "alpha")]
 
 
 @pytest.mark.parametrize("branch", [1, -1])
@@ -110,11 +110,11 @@ def test_every_status():
         single = dx.simulate(torque=0.25, t_end=2.0, theta0=0.1, **design)
         assert single["status"] == 2
         assert many["t_last"][row] == pytest.approx(single["t"][-1], abs=1e-9)
-        told = many["t"] <= many["t_last"][row]
-        assert np.isfinite(many["theta"][row, told]).all()
-        assert np.isnan(many["theta"][row, ~told]).all()
-        at = single["solution"](many["t"][told])
-        np.testing.assert_allclose(many["theta"][row, told], at["theta"], rtol=0, atol=1e-9)
+        message = many["t"] <= many["t_last"][row]
+        assert np.isfinite(many["theta"][row, message]).all()
+        assert np.isnan(many["theta"][row, ~message]).all()
+        at = single["solution"](many["t"][message])
+        np.testing.assert_allclose(many["theta"][row, message], at["theta"], rtol=0, atol=1e-9)
     assert np.isfinite(many["theta"][1]).all()
     assert np.isnan(many["theta"][5]).all()
     assert np.isnan(many["t_last"][5])
@@ -201,9 +201,9 @@ def test_what_is_refused(change, error, message):
 
 
 def test_friction_of_none_counts_as_designs():
-    found = dx.simulate(**{"torque": 0.25, "t_end": 0.1, "times": [0.1], **PRESS, "mu": [0.0, 0.0]})
-    assert found["theta"].shape == (2, 1)
-    assert found["status"].shape == (2,)
+    result = dx.simulate(**{"torque": 0.25, "t_end": 0.1, "times": [0.1], **PRESS, "mu": [0.0, 0.0]})
+    assert result["theta"].shape == (2, 1)
+    assert result["status"].shape == (2,)
 
 
 def test_the_edge_is_the_same_in_both():

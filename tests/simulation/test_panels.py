@@ -48,27 +48,27 @@ def drawn(count, seed):
 def test_many_motions_are_those_of_one_at_a_time(torque):
     call = {"torque": torque, "t_end": 1.5, "rtol": 1e-9}
     designs = drawn(cases(8, 60, 300), seed=7)
-    found = dx.simulate(**call, **designs)
+    result = dx.simulate(**call, **designs)
     usual = []
     for row in range(len(designs["AB"])):
         one = {n: float(v[row]) if isinstance(v, np.ndarray) else v for n, v in designs.items()}
-        alone = dx.simulate(times=found["t"], **call, **one)
-        assert found["status"][row] == alone["status"]
+        alone = dx.simulate(times=result["t"], **call, **one)
+        assert result["status"][row] == alone["status"]
         for name in ("theta", "omega"):
-            off = np.abs(found[name][row, : len(alone["t"])] - alone[name]).max()
+            off = np.abs(result[name][row, : len(alone["t"])] - alone[name]).max()
             assert off < 1e-5 * max(np.abs(alone[name]).max(), 1.0)
             usual.append(off)
     assert np.median(usual) < (1e-6 if torque is jumps else 1e-8)  # a step in time over a jump errs, too
-    _check_that_neighbours_do_not_matter({**call, **designs}, found)
+    _check_that_neighbours_do_not_matter({**call, **designs}, result)
 
 
-def _check_that_neighbours_do_not_matter(call, found):
+def _check_that_neighbours_do_not_matter(call, result):
     some = slice(1, 40, 3)
     fewer = {n: v[some] if isinstance(v, np.ndarray) else v for n, v in call.items()}
     for threads in (1, 3):
         part = dx.simulate(threads=threads, **fewer)
         for name in ("theta", "omega", "alpha", "t_last", "work"):
-            np.testing.assert_array_equal(part[name], found[name][some])
+            np.testing.assert_array_equal(part[name], result[name][some])
 
 
 @pytest.mark.thorough
@@ -78,9 +78,9 @@ def test_the_end_of_a_motion_against_arbs():
     theta, omega = true_end(
         row, lambda t, theta, omega: -0.02 * omega + 1.5 + 0.3 * t.sin(), 0.0, 0.0, 1.0, 300
     )
-    found = dx.simulate(torque=of_t_and_omega, t_end=1.0, times=[1.0], rtol=1e-10, **many)
-    assert abs(found["theta"][0, 0] / theta - 1.0) < 1e-12
-    assert abs(found["omega"][0, 0] / omega - 1.0) < 1e-11
+    result = dx.simulate(torque=of_t_and_omega, t_end=1.0, times=[1.0], rtol=1e-10, **many)
+    assert abs(result["theta"][0, 0] / theta - 1.0) < 1e-12
+    assert abs(result["omega"][0, 0] / omega - 1.0) < 1e-11
 
 
 def test_machine_code_has_the_values_of_plain_python():
@@ -110,11 +110,11 @@ def test_machine_code_has_the_values_of_plain_python():
 @pytest.mark.parametrize("inertia", [0.02, np.array([0.02, 0.021])], ids=["one", "many"])
 def test_a_function_that_jumps_next_to_an_end_of_a_panel(inertia):
     """Kinetic energy of a balanced crank against the work of 1 N m where cos(theta) > 0, else 0.2 N m."""
-    found = dx.simulate(
+    result = dx.simulate(
         torque=lambda t, theta, omega: 1.0 if math.cos(theta) > 0.0 else 0.2, t_end=2.0, rtol=1e-10,
         AB=0.05, BC=0.15, ec=0.0, I_crank=inertia,
     )  # fmt: skip
-    theta, omega = found["theta"], found["omega"]
+    theta, omega = result["theta"], result["omega"]
     half_turns, rest = np.divmod(theta + 0.5 * np.pi, np.pi)
     work = np.pi * (np.ceil(half_turns / 2.0) + 0.2 * np.floor(half_turns / 2.0))
     work += rest * np.where(half_turns % 2.0 == 0.0, 1.0, 0.2) - 0.5 * np.pi

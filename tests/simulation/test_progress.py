@@ -17,14 +17,14 @@ def test_long_simulations_tell_what_is_done(kind, monkeypatch):
     @contextmanager
     def recorded(**options):
         assert options == {"unit": "designs"}
-        yield lambda *told: seen.append(told)
+        yield lambda *message: seen.append(message)
 
     monkeypatch.setattr("desaxe.simulation.rows.progress_bar", recorded)
     monkeypatch.setattr("desaxe.simulation.rows.LARGE", 20)
     monkeypatch.setattr("desaxe.simulation.rows.PART", 8)
     torque, more = 1.0, {} if kind == "many" else {"wrt": "AB"}
     dx.simulate(torque=torque, t_end=0.01, **more, **DESIGN)
-    done = [told[0] for told in seen]
+    done = [message[0] for message in seen]
     assert seen[0] == (0, 24, "motions")
     assert len(done) > 2
     assert done == sorted(done)

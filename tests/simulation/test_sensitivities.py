@@ -41,16 +41,16 @@ H = 2e-5  # of a parameter: the step of the differences
 @pytest.mark.parametrize("parameter", BY_TRUTH[: cases(2, 3, len(BY_TRUTH))])
 def test_sensitivities_are_those_of_60_digits(parameter):
     start = {"torque": -0.5, "theta0": 1.0, "omega_start": 12.0, "t_end": 0.05}
-    found = dx.simulate(**start, times=[0.05], wrt=parameter, **LOADED)
+    result = dx.simulate(**start, times=[0.05], wrt=parameter, **LOADED)
     theta, omega = true_slopes(parameter, LOADED, -0.5, 1.0, 12.0, 0.05, 13)
-    assert found[f"theta_wrt_{parameter}"][0] == pytest.approx(theta, rel=1e-12)
-    assert found[f"omega_wrt_{parameter}"][0] == pytest.approx(omega, rel=1e-12)
+    assert result[f"theta_wrt_{parameter}"][0] == pytest.approx(theta, rel=1e-12)
+    assert result[f"omega_wrt_{parameter}"][0] == pytest.approx(omega, rel=1e-12)
 
 
 def test_standstills_of_a_pendulum():
     """theta'' = -(m g r/I) sin(theta), with r half the crank: the quarter period is K(sin(a/2))/w."""
     wrt = ["theta0", "g_Y", "m_crank", "I_crank", "AB"]
-    found = dx.simulate(torque=0.0, t_end=2.0, theta0=math.pi - 2.5, wrt=wrt, **CRANK)
+    result = dx.simulate(torque=0.0, t_end=2.0, theta0=math.pi - 2.5, wrt=wrt, **CRANK)
     given = {"theta0": math.pi - 2.5, **CRANK}
 
     def half(p, value):
@@ -60,7 +60,7 @@ def test_standstills_of_a_pendulum():
         speed = mpmath.sqrt(-at["m_crank"] * at["g_Y"] * arm / inertia)
         return 2 * mpmath.ellipk(mpmath.sin(amplitude / 2) ** 2) / speed
 
-    stops = [event for event in found["events"] if event.kind == "standstill"]
+    stops = [event for event in result["events"] if event.kind == "standstill"]
     assert len(stops) >= 2
     for p in wrt:
         slope = float(mpmath.diff(lambda value, p=p: half(p, value), given[p]))
@@ -70,19 +70,19 @@ def test_standstills_of_a_pendulum():
 
 def test_the_work_of_a_constant_torque_is_that_of_the_angle():
     wrt = ["torque", "AB", "theta0", "m_slider"]
-    found = dx.simulate(torque=0.25, t_end=1.0, theta0=0.3, wrt=wrt, **PRESS)
-    turned = found["theta"][-1] - 0.3
+    result = dx.simulate(torque=0.25, t_end=1.0, theta0=0.3, wrt=wrt, **PRESS)
+    turned = result["theta"][-1] - 0.3
     for p in wrt:
         own = turned if p == "torque" else -0.25 if p == "theta0" else 0.0
-        wanted = 0.25 * found[f"theta_wrt_{p}"][-1] + own
-        assert found[f"work_wrt_{p}"] == pytest.approx(wanted, rel=1e-8)
-        assert found[f"t_last_wrt_{p}"] == 0.0
-    found = dx.simulate(torque=0.25, t_end=5.0, theta0=0.3, until=4.0, wrt=wrt, **PRESS)
-    wanted = {"torque": 3.7, "AB": 0.0, "theta0": -0.25, "m_slider": 0.0}
+        expected = 0.25 * result[f"theta_wrt_{p}"][-1] + own
+        assert result[f"work_wrt_{p}"] == pytest.approx(expected, rel=1e-8)
+        assert result[f"t_last_wrt_{p}"] == 0.0
+    result = dx.simulate(torque=0.25, t_end=5.0, theta0=0.3, until=4.0, wrt=wrt, **PRESS)
+    expected = {"torque": 3.7, "AB": 0.0, "theta0": -0.25, "m_slider": 0.0}
     for p in wrt:
-        assert found[f"work_wrt_{p}"] == pytest.approx(wanted[p], abs=1e-8)
-        assert found[f"t_last_wrt_{p}"] == found["events"][-1].wrt[p] != 0.0
-        along = found[f"theta_wrt_{p}"][-1] + found["omega"][-1] * found[f"t_last_wrt_{p}"]
+        assert result[f"work_wrt_{p}"] == pytest.approx(expected[p], abs=1e-8)
+        assert result[f"t_last_wrt_{p}"] == result["events"][-1].wrt[p] != 0.0
+        along = result[f"theta_wrt_{p}"][-1] + result["omega"][-1] * result[f"t_last_wrt_{p}"]
         assert along == pytest.approx(0.0, abs=1e-8)
 
 
@@ -106,28 +106,28 @@ def differences(call, given, p, share=H):
     def slope(key):
         return (8.0 * (key(c) - key(b)) - (key(d) - key(a))) / (12.0 * step)
 
-    found = {key: slope(lambda run, key=key: np.asarray(run[key])) for key in KEYS}
-    return found | {"events": slope(lambda run: np.array([event.t for event in run["events"]]))}
+    result = {key: slope(lambda run, key=key: np.asarray(run[key])) for key in KEYS}
+    return result | {"events": slope(lambda run: np.array([event.t for event in run["events"]]))}
 
 
 def check(call, given, wrt, tolerance=1e-5, derivative=None):
     """Compare all sensitivities with differences; False where there are none."""
     call = {"rtol": 3e-14, "times": np.linspace(0.0, call["t_end"], 9), **call}
     extra = {} if derivative is None else {"derivative": derivative}
-    found = dx.simulate(**{**call, "rtol": 1e-10}, wrt=wrt, **extra, **given)
+    result = dx.simulate(**{**call, "rtol": 1e-10}, wrt=wrt, **extra, **given)
     for p in wrt:
-        wanted = differences(call, given, p)
-        if wanted is None or len(wanted["theta"]) != len(found["t"]):
+        expected = differences(call, given, p)
+        if expected is None or len(expected["theta"]) != len(result["t"]):
             return False
         for key in KEYS:
-            own, size = np.asarray(found[f"{key}_wrt_{p}"]), np.abs(wanted[key]).max()
-            least = np.abs(found[key]).max() / max(abs(given[p]), 0.05)
+            own, size = np.asarray(result[f"{key}_wrt_{p}"]), np.abs(expected[key]).max()
+            least = np.abs(result[key]).max() / max(abs(given[p]), 0.05)
             np.testing.assert_allclose(
-                own, wanted[key], rtol=0, atol=tolerance * (size + 1e-2 * least), err_msg=f"{key} by {p}"
+                own, expected[key], rtol=0, atol=tolerance * (size + 1e-2 * least), err_msg=f"{key} by {p}"
             )
-        events = [e.wrt[p] for e in found["events"]]
-        size = np.abs(wanted["events"]).max(initial=0.0) + 1e-2 * call["t_end"] / max(abs(given[p]), 0.05)
-        np.testing.assert_allclose(events, wanted["events"], rtol=0, atol=tolerance * size, err_msg=p)
+        events = [e.wrt[p] for e in result["events"]]
+        size = np.abs(expected["events"]).max(initial=0.0) + 1e-2 * call["t_end"] / max(abs(given[p]), 0.05)
+        np.testing.assert_allclose(events, expected["events"], rtol=0, atol=tolerance * size, err_msg=p)
     return True
 
 
@@ -195,13 +195,13 @@ def test_jumps_of_loads_that_move_with_the_lengths(kind):
 def test_random_motions_with_events():
     """Two parameters of each; a motion whose events change within the step of differences is redrawn."""
     rng = np.random.default_rng(20)
-    wanted, done, tried = cases(3, 7, 1000), 0, 0
-    while done < wanted:
+    expected, done, tried = cases(3, 7, 1000), 0, 0
+    while done < expected:
         tried += 1
         call, given, derivative = drawn(rng)
         wrt = sorted(rng.choice(sorted(p for p in given if given[p]), 2, replace=False).tolist())
         done += check(call, given, wrt, 3e-5, derivative)
-        assert tried < 3 * wanted + 10
+        assert tried < 3 * expected + 10
 
 
 # ---- where there is none, and who asks -----------------------------------------------------------------
@@ -212,13 +212,13 @@ def test_a_limit_angle_and_when_it_is_reached(omega_start, mu):
     """With friction two sets of forces balance the acceleration there; the motion has one of them."""
     given = {**ROCKER, "torque": 0.25, "theta0": 0.3, "omega_start": omega_start, "mu": mu}
     wrt = ["m_slider", "theta0"]
-    found = dx.simulate(t_end=1.0, times=[0.0], wrt=wrt, **given)
-    assert found["status"] == 2
+    result = dx.simulate(t_end=1.0, times=[0.0], wrt=wrt, **given)
+    assert result["status"] == 2
     for p in wrt:
-        wanted = differences({"t_end": 1.0, "times": [0.0]}, given, p, 2e-3)
-        assert found[f"t_last_wrt_{p}"] == found["events"][-1].wrt[p]
-        assert found[f"t_last_wrt_{p}"] == pytest.approx(wanted["t_last"], rel=1e-4)
-        assert found[f"work_wrt_{p}"] == pytest.approx(wanted["work"], rel=1e-4, abs=1e-5)
+        expected = differences({"t_end": 1.0, "times": [0.0]}, given, p, 2e-3)
+        assert result[f"t_last_wrt_{p}"] == result["events"][-1].wrt[p]
+        assert result[f"t_last_wrt_{p}"] == pytest.approx(expected["t_last"], rel=1e-4)
+        assert result[f"work_wrt_{p}"] == pytest.approx(expected["work"], rel=1e-4, abs=1e-5)
 
 
 @pytest.mark.sampled
@@ -229,12 +229,12 @@ def test_random_machines_up_to_a_limit_angle():
     assert limit.size >= 5
     for row in limit:
         one = {name: float(np.broadcast_to(v, limit[-1] + 1)[row]) for name, v in designs.items()}
-        found = dx.simulate(**call, wrt=wrt, **one)
+        result = dx.simulate(**call, wrt=wrt, **one)
         for p in wrt:
             truth = differences(call, one, p)
             if truth is not None:
                 for key in ("t_last", "work"):
-                    assert found[f"{key}_wrt_{p}"] == pytest.approx(truth[key], rel=1e-5, abs=1e-5)
+                    assert result[f"{key}_wrt_{p}"] == pytest.approx(truth[key], rel=1e-5, abs=1e-5)
 
 
 @pytest.mark.parametrize("start", [0.0, 1e-7, -1e-7])
@@ -261,20 +261,20 @@ def test_the_work_up_to_a_limit_angle_is_that_of_where_it_starts(kind):
     }
     load, there = loads[kind]
     call = {"torque": 0.25, "t_end": 1.0, "theta0": 0.3, "omega_start": 9.0, "F_Y": load}
-    found = dx.simulate(**call, wrt="theta0", **ROCKER)
-    assert found["status"] == 2
-    assert found["work_wrt_theta0"] == pytest.approx(-0.25 - there * slope, abs=1e-6)
+    result = dx.simulate(**call, wrt="theta0", **ROCKER)
+    assert result["status"] == 2
+    assert result["work_wrt_theta0"] == pytest.approx(-0.25 - there * slope, abs=1e-6)
 
 
 def test_the_work_where_a_torque_jumps_just_before_a_limit_angle():
     """The last panel starts with the jump; the work is 0.25 (0.78 - theta0) + 3 (limit - 0.78)."""
     torque = dx.over_theta([-1.0, 0.78, 1.5], [0.25, 3.0, 0.25], kind="step")
     call = {"t_end": 1.0, "theta0": 0.3, "omega_start": 9.0, "wrt": ["AB", "theta0"], **ROCKER}
-    found = dx.simulate(torque=torque, **call)
-    assert found["status"] == 2
+    result = dx.simulate(torque=torque, **call)
+    assert result["status"] == 2
     limit = math.asin((ROCKER["BC"] - ROCKER["ec"]) / ROCKER["AB"])
-    assert found["work_wrt_theta0"] == pytest.approx(-0.25, rel=1e-7)
-    assert found["work_wrt_AB"] == pytest.approx(-3.0 * math.tan(limit) / ROCKER["AB"], rel=1e-7)
+    assert result["work_wrt_theta0"] == pytest.approx(-0.25, rel=1e-7)
+    assert result["work_wrt_AB"] == pytest.approx(-3.0 * math.tan(limit) / ROCKER["AB"], rel=1e-7)
 
 
 Y_PLACES, ANGLES = [0.029, 0.036, 0.093, 0.095, 0.125], [0.672, 1.516, 1.616, 2.342, 3.009]
@@ -303,46 +303,46 @@ def test_the_work_of_friction_up_to_a_limit_angle_is_the_same_at_every_rtol(case
 
     right = (4.0 * difference(1e-3) - difference(2e-3)) / 3.0
     for rtol in (1e-8, 1e-9, 1e-10, 1e-12):
-        found = dx.simulate(**call, mu=0.2, rtol=rtol, wrt="mu")
-        assert found["status"] == 2
-        assert found["work_wrt_mu"] == pytest.approx(right, rel=3e-6), rtol
+        result = dx.simulate(**call, mu=0.2, rtol=rtol, wrt="mu")
+        assert result["status"] == 2
+        assert result["work_wrt_mu"] == pytest.approx(right, rel=3e-6), rtol
 
 
 def test_an_angle_that_is_only_touched_has_no_derivative():
     swing = {"torque": 0.0, "theta0": math.pi - 2.5, "rtol": 1e-12, **CRANK}
     free = dx.simulate(t_end=1.0, **swing)
     stop = next(event for event in free["events"] if event.kind == "standstill")
-    found = dx.simulate(t_end=1.0, until=stop.theta - 1e-14, wrt=["g_Y", "torque"], **swing)
-    last = found["events"][-1]
+    result = dx.simulate(t_end=1.0, until=stop.theta - 1e-14, wrt=["g_Y", "torque"], **swing)
+    last = result["events"][-1]
     assert last.kind == "angle"
-    assert all(map(math.isnan, (*last.wrt.values(), found["t_last_wrt_g_Y"], found["work_wrt_torque"])))
-    assert "sensitivities: NaN where an angle is only touched" in found["message"]
-    assert np.isfinite(found["theta_wrt_g_Y"]).all()
+    assert all(map(math.isnan, (*last.wrt.values(), result["t_last_wrt_g_Y"], result["work_wrt_torque"])))
+    assert "sensitivities: NaN where an angle is only touched" in result["message"]
+    assert np.isfinite(result["theta_wrt_g_Y"]).all()
 
 
 def test_a_crank_that_friction_holds_has_none_of_its_speed():
     wrt = ["omega_start", "mu", "theta0"]
     call = {"torque": lambda omega: 0.0, "derivative": lambda omega: (0.0, 0.0), "wrt": wrt}
-    found = dx.simulate(**call, t_end=2.0, omega_start=3.0, mu=0.3, F_X=-8.0, **PRESS)
-    assert "at rest from" in found["message"]
-    end, stop = found["events"][-1], found["theta"] == found["theta"][-1]
+    result = dx.simulate(**call, t_end=2.0, omega_start=3.0, mu=0.3, F_X=-8.0, **PRESS)
+    assert "at rest from" in result["message"]
+    end, stop = result["events"][-1], result["theta"] == result["theta"][-1]
     assert end.kind == "standstill"
     for p in wrt:
         assert stop.sum() > 100
-        assert np.ptp(found[f"theta_wrt_{p}"][stop]) == 0.0
-        assert not found[f"omega_wrt_{p}"][stop].any()
+        assert np.ptp(result[f"theta_wrt_{p}"][stop]) == 0.0
+        assert not result[f"omega_wrt_{p}"][stop].any()
         assert end.wrt[p] != 0.0
 
 
 def test_a_motion_that_jams_has_those_up_to_there():
     jams = {"ec": 0.06, "AB": 0.04, "BC": 0.101, "m_slider": 1.0, "I_crank": 0.01, "F_Y": -50.0, "mu": 0.9}
     wrt = ["omega_start", "theta0", "AB"]
-    found = dx.simulate(torque=3.0, t_end=1.0, theta0=1.0, omega_start=-3.0, times=[0.0], wrt=wrt, **jams)
-    assert found["status"] == 3
-    assert [found[f"omega_wrt_{p}"][0] for p in wrt] == [1.0, 0.0, 0.0]
-    assert [found[f"theta_wrt_{p}"][0] for p in wrt] == [0.0, 1.0, 0.0]
-    assert math.isnan(found["t_last_wrt_AB"])
-    assert "NaN of friction jams" in found["message"]
+    result = dx.simulate(torque=3.0, t_end=1.0, theta0=1.0, omega_start=-3.0, times=[0.0], wrt=wrt, **jams)
+    assert result["status"] == 3
+    assert [result[f"omega_wrt_{p}"][0] for p in wrt] == [1.0, 0.0, 0.0]
+    assert [result[f"theta_wrt_{p}"][0] for p in wrt] == [0.0, 1.0, 0.0]
+    assert math.isnan(result["t_last_wrt_AB"])
+    assert "NaN of friction jams" in result["message"]
 
 
 def test_a_break_away_comes_when_the_torque_is_enough():
@@ -354,33 +354,33 @@ def test_a_break_away_comes_when_the_torque_is_enough():
     def slopes(t, theta, omega):
         return 0.0, 0.0, 20.0 * math.cos(5.0 * t)
 
-    found = dx.simulate(**call, **given, wrt=wrt, derivative=slopes)
-    assert found["events"][0].kind == "break-away"
+    result = dx.simulate(**call, **given, wrt=wrt, derivative=slopes)
+    assert result["events"][0].kind == "break-away"
     held = {**given, **rest, "theta": 1.0, "omega": 1e-30, "alpha": 0.0}
     del held["theta0"], held["omega_start"]
     for p in wrt:
         by = dx.evaluate(f"T_in_wrt_{'theta' if p == 'theta0' else p}", **held)
-        rate = 20.0 * math.cos(5.0 * found["events"][0].t)
-        assert found["events"][0].wrt[p] == pytest.approx(by / rate, rel=1e-6)
+        rate = 20.0 * math.cos(5.0 * result["events"][0].t)
+        assert result["events"][0].wrt[p] == pytest.approx(by / rate, rel=1e-6)
     assert check(call, given, wrt, 3e-5, slopes)
     two = dx.simulate(**call, **given, wrt=wrt, derivative=lambda t, theta, omega: (0.0, 0.0))
     assert all(map(math.isnan, two["events"][0].wrt.values()))
     assert "returns dT/dt, too" in two["message"]
-    np.testing.assert_array_equal(two["theta_wrt_mu"], found["theta_wrt_mu"])
+    np.testing.assert_array_equal(two["theta_wrt_mu"], result["theta_wrt_mu"])
 
 
 def test_an_array_of_designs_has_those_of_each():
     wrt, masses = ["m_slider", "torque", "omega_start"], np.array([[1.0, 2.0], [3.0, -1.0]])
     call = {"torque": 0.25, "t_end": 0.3, "times": [0.1, 0.3], "omega_start": 2.0, "wrt": wrt}
-    found = dx.simulate(**call, **{**PRESS, "m_slider": masses})
+    result = dx.simulate(**call, **{**PRESS, "m_slider": masses})
     for at in ((0, 0), (0, 1), (1, 0)):
         one = dx.simulate(**call, **{**PRESS, "m_slider": masses[at]})
         for p in wrt:
             for key in (f"theta_wrt_{p}", f"omega_wrt_{p}", f"t_last_wrt_{p}", f"work_wrt_{p}"):
-                np.testing.assert_allclose(found[key][at], one[key], rtol=1e-8, atol=1e-12)
-    assert found["theta_wrt_torque"].shape == (2, 2, 2)
-    assert np.isnan(found["work_wrt_torque"][1, 1])
-    assert found["status"][1, 1] == 6
+                np.testing.assert_allclose(result[key][at], one[key], rtol=1e-8, atol=1e-12)
+    assert result["theta_wrt_torque"].shape == (2, 2, 2)
+    assert np.isnan(result["work_wrt_torque"][1, 1])
+    assert result["status"][1, 1] == 6
 
 
 def test_a_machine_tells_them_in_its_units():
@@ -393,8 +393,8 @@ def test_a_machine_tells_them_in_its_units():
     shown = {"AB": 1000.0, "theta0": degree, "omega_start": rpm, "torque": 1.0}
     for p, unit in shown.items():
         for key, own in {"theta": degree, "omega": rpm, "t_last": 1.0, "work": 1.0}.items():
-            wanted = np.asarray(plain[f"{key}_wrt_{p}"]) * own / unit
-            np.testing.assert_allclose(ours[f"{key}_wrt_{p}"], wanted, rtol=1e-12)
+            expected = np.asarray(plain[f"{key}_wrt_{p}"]) * own / unit
+            np.testing.assert_allclose(ours[f"{key}_wrt_{p}"], expected, rtol=1e-12)
         assert ours["events"][0].wrt[p] == pytest.approx(plain["events"][0].wrt[p] / unit, rel=1e-12)
 
 

@@ -43,17 +43,17 @@ def kinds(result):
 )
 def test_the_end_of_a_motion(design, torque, theta0, omega_start):
     theta, omega = true_end(design, torque, theta0, omega_start, 0.3, 80)
-    found = dx.simulate(
+    result = dx.simulate(
         torque=torque, t_end=0.3, theta0=theta0, omega_start=omega_start, rtol=1e-11, **design
     )
-    assert found["status"] == 0
-    assert abs(found["theta"][-1] - theta) < 1e-9
-    assert abs(found["omega"][-1] - omega) < 1e-9 * max(1.0, abs(omega))
-    assert found["energy_residual"] < 1e-9
+    assert result["status"] == 0
+    assert abs(result["theta"][-1] - theta) < 1e-9
+    assert abs(result["omega"][-1] - omega) < 1e-9 * max(1.0, abs(omega))
+    assert result["energy_residual"] < 1e-9
 
 
 def test_without_a_torque_the_energy_stays():
-    found = dx.simulate(
+    result = dx.simulate(
         torque=0.0,
         t_end=3.0,
         omega_start=10.0,
@@ -61,17 +61,18 @@ def test_without_a_torque_the_energy_stays():
         **PRESS,
         g_Y=-9.81,
     )
-    energy = found["kinetic_energy"] + found["potential_energy"]
-    assert np.ptp(energy) < 1e-9 * found["kinetic_energy"].max()
-    assert (found["work"], found["status"]) == (0.0, 0)
-    assert found["energy_residual"] < 1e-9
+    energy = result["kinetic_energy"] + result["potential_energy"]
+    assert np.ptp(energy) < 1e-9 * result["kinetic_energy"].max()
+    assert (result["work"], result["status"]) == (0.0, 0)
+    assert result["energy_residual"] < 1e-9
 
 
 def test_a_constant_torque_works_by_the_angle():
-    found = dx.simulate(torque=0.25, t_end=3.0, **PRESS)
-    assert found["work"] == pytest.approx(0.25 * found["theta"][-1], rel=1e-10)
-    assert found["work"] == pytest.approx(
-        dx.evaluate("kinetic_energy", theta=found["theta"][-1], omega=found["omega"][-1], **PRESS), rel=1e-10
+    result = dx.simulate(torque=0.25, t_end=3.0, **PRESS)
+    assert result["work"] == pytest.approx(0.25 * result["theta"][-1], rel=1e-10)
+    assert result["work"] == pytest.approx(
+        dx.evaluate("kinetic_energy", theta=result["theta"][-1], omega=result["omega"][-1], **PRESS),
+        rel=1e-10,
     )
 
 
@@ -79,10 +80,10 @@ def test_the_torque_that_the_motion_takes_is_the_torque_given():
     def torque(t, theta, omega):
         return 0.4 * math.cos(3.0 * t) - 0.02 * omega
 
-    found = dx.simulate(torque=torque, t_end=2.0, names=["T_in"], mu=0.2, **LOADED)
-    given = [torque(*row) for row in zip(found["t"], found["theta"], found["omega"], strict=True)]
-    resting = (found["omega"] == 0.0) & (found["alpha"] == 0.0)
-    np.testing.assert_allclose(found["T_in"][~resting], np.array(given)[~resting], rtol=0, atol=1e-10)
+    result = dx.simulate(torque=torque, t_end=2.0, names=["T_in"], mu=0.2, **LOADED)
+    given = [torque(*row) for row in zip(result["t"], result["theta"], result["omega"], strict=True)]
+    resting = (result["omega"] == 0.0) & (result["alpha"] == 0.0)
+    np.testing.assert_allclose(result["T_in"][~resting], np.array(given)[~resting], rtol=0, atol=1e-10)
 
 
 def test_backwards_in_time_it_comes_back():
@@ -114,14 +115,14 @@ def test_the_other_branch_is_the_slider_on_the_other_side():
 def test_only_a_crank_is_a_pendulum():
     """theta'' = -(m g r/I) sin(theta): a quarter of the period is K(sin(a/2))/w."""
     amplitude = 2.5
-    found = dx.simulate(torque=0.0, t_end=2.0, theta0=math.pi - amplitude, g_Y=-9.81, **CRANK)
+    result = dx.simulate(torque=0.0, t_end=2.0, theta0=math.pi - amplitude, g_Y=-9.81, **CRANK)
     inertia = 0.002 + 1.0 * 0.07**2
     period = 4.0 * mpmath.ellipk(math.sin(amplitude / 2.0) ** 2) / math.sqrt(1.0 * 9.81 * 0.07 / inertia)
-    times = [event.t for event in found["events"] if event.kind == "standstill"]
+    times = [event.t for event in result["events"] if event.kind == "standstill"]
     assert len(times) >= 2
     for k, t in enumerate(times):
         assert abs(t - (k + 1) * period / 2.0) < 1e-9
-    assert found["energy_residual"] < 1e-9
+    assert result["energy_residual"] < 1e-9
 
 
 # ---- events --------------------------------------------------------------------------------------
@@ -131,34 +132,34 @@ def test_only_a_crank_is_a_pendulum():
 @pytest.mark.parametrize("mu", [0.0, 0.05])
 def test_dead_centres(ec, branch, mu):
     design = {**PRESS, "ec": ec}
-    found = dx.simulate(torque=0.0, t_end=1.5, theta0=0.5, omega_start=15.0, branch=branch, mu=mu, **design)
+    result = dx.simulate(torque=0.0, t_end=1.5, theta0=0.5, omega_start=15.0, branch=branch, mu=mu, **design)
     outer, inner = math.asin(-ec / 0.45), math.pi - math.asin(ec / 0.17)
     closed = {"outer": outer, "inner": inner}
     if branch < 0:
         closed = {"outer": math.pi - outer, "inner": math.pi - inner}
-    told = [event for event in found["events"] if event.kind == "dead centre"]
-    assert len(told) >= 3
-    assert all(a.which != b.which for a, b in pairwise(told))
-    for event in told:
+    message = [event for event in result["events"] if event.kind == "dead centre"]
+    assert len(message) >= 3
+    assert all(a.which != b.which for a, b in pairwise(message))
+    for event in message:
         away = (event.theta - closed[event.which] + 1.0) % TURN - 1.0
         assert abs(away) < 1e-12
-        at = found["solution"](event.t)
+        at = result["solution"](event.t)
         assert abs(at["theta"] - event.theta) < 1e-9
         assert at["omega"] == pytest.approx(event.omega, abs=1e-8)
 
 
 def test_the_first_angle_that_is_reached_ends_the_motion():
-    found = dx.simulate(torque=0.25, t_end=10.0, until=[5.0, -3.0, 9.0], **PRESS)
-    assert (found["status"], found["theta"][-1], kinds(found)[-1]) == (0, 5.0, "angle")
-    assert found["t"][-1] == found["events"][-1].t < 10.0
-    assert "angle 5 rad" in found["message"]
+    result = dx.simulate(torque=0.25, t_end=10.0, until=[5.0, -3.0, 9.0], **PRESS)
+    assert (result["status"], result["theta"][-1], kinds(result)[-1]) == (0, 5.0, "angle")
+    assert result["t"][-1] == result["events"][-1].t < 10.0
+    assert "angle 5 rad" in result["message"]
 
 
 @pytest.mark.parametrize("torque", [0.25, lambda theta: 0.25], ids=["energy", "panels"])
 def test_numbers_of_a_motion_are_plain_floats(torque):
-    found = dx.simulate(torque=torque, t_end=10.0, until=5.0, **PRESS)
-    numbers = [found["t_last"], found["work"], found["energy_residual"]]
-    numbers += [number for event in found["events"] for number in event[1:4]]
+    result = dx.simulate(torque=torque, t_end=10.0, until=5.0, **PRESS)
+    numbers = [result["t_last"], result["work"], result["energy_residual"]]
+    numbers += [number for event in result["events"] for number in event[1:4]]
     assert {type(number) for number in numbers} == {float}
 
 
@@ -166,8 +167,8 @@ def test_an_angle_that_is_passed_within_a_turning_back_counts():
     """The crank turns round just behind the angle."""
     swing = dx.simulate(torque=0.0, t_end=2.0, theta0=1.0, g_Y=-9.81, **CRANK)
     top = next(event.theta for event in swing["events"] if event.kind == "standstill")
-    found = dx.simulate(torque=0.0, t_end=2.0, theta0=1.0, g_Y=-9.81, until=top - 1e-6, **CRANK)
-    assert found["theta"][-1] == top - 1e-6
+    result = dx.simulate(torque=0.0, t_end=2.0, theta0=1.0, g_Y=-9.81, until=top - 1e-6, **CRANK)
+    assert result["theta"][-1] == top - 1e-6
     assert (
         dx.simulate(torque=0.0, t_end=2.0, theta0=1.0, g_Y=-9.81, until=top + 1e-6, **CRANK)["t"][-1] == 2.0
     )
@@ -200,32 +201,32 @@ def test_a_limit_angle_ends_the_motion(masses):
     light = {"m_rod": 0.0, "m_slider": 0.0, "I_rod": 0.0} if masses == "crank" else {}
     design = {**ROCKER, **light}
     last, time = limit_time(design, 0.25, 0.1)
-    found = dx.simulate(torque=0.25, t_end=3.0, theta0=0.1, **design)
-    event = found["events"][-1]
-    assert (found["status"], event.kind) == (2, "limit")
+    result = dx.simulate(torque=0.25, t_end=3.0, theta0=0.1, **design)
+    event = result["events"][-1]
+    assert (result["status"], event.kind) == (2, "limit")
     assert abs(event.theta - last) <= 1e-12 * last
-    assert event.theta == found["theta"][-1]
+    assert event.theta == result["theta"][-1]
     assert abs(event.t - time) < 1e-9
     assert (event.omega == 0.0) == (masses == "all")
-    assert found["energy_residual"] < 1e-9
-    assert found["t"][-1] == event.t
+    assert result["energy_residual"] < 1e-9
+    assert result["t"][-1] == event.t
     if masses == "all":  # theta'' there, from the history before it
-        t, omega = found["t"][-3:-1], found["omega"][-3:-1]
+        t, omega = result["t"][-3:-1], result["omega"][-3:-1]
         slope = (omega[1] - omega[0]) / (t[1] - t[0])
-        assert found["alpha"][-1] == pytest.approx(slope, rel=2e-2)
+        assert result["alpha"][-1] == pytest.approx(slope, rel=2e-2)
 
 
 def test_a_load_that_grows_without_bound_at_a_limit():
     """On a massless slider: F_Y Y' is infinite there, its work is not."""
     design = {"AB": 0.1, "BC": 0.15, "ec": -0.06, "m_crank": 0.3, "I_crank": 0.0009, "F_Y": 10.0}
-    found = dx.simulate(torque=0.0, t_end=1.0, theta0=0.3, omega_start=-70.0, **design)
+    result = dx.simulate(torque=0.0, t_end=1.0, theta0=0.3, omega_start=-70.0, **design)
     last = math.asin((0.06 - 0.15) / 0.1)
-    assert found["status"] == 2
-    assert found["theta"][-1] == pytest.approx(last, rel=1e-12)
-    assert found["energy_residual"] < 1e-9
+    assert result["status"] == 2
+    assert result["theta"][-1] == pytest.approx(last, rel=1e-12)
+    assert result["energy_residual"] < 1e-9
     inertia = 0.0009 + 0.3 * 0.05**2
     lost = 10.0 * (dx.evaluate("Y", theta=0.3, ec=-0.06, AB=0.1, BC=0.15) - 0.1 * math.cos(last))
-    assert found["omega"][-1] == pytest.approx(-math.sqrt(70.0**2 - 2.0 * lost / inertia), rel=1e-6)
+    assert result["omega"][-1] == pytest.approx(-math.sqrt(70.0**2 - 2.0 * lost / inertia), rel=1e-6)
 
 
 def test_steps_that_end_next_to_a_limit():
@@ -241,33 +242,33 @@ def test_steps_that_end_next_to_a_limit():
 
 
 def test_a_swing_between_limits_goes_on():
-    found = dx.simulate(torque=lambda t, theta, omega: -2.0 * theta, t_end=5.0, theta0=0.5, **ROCKER)
-    assert found["status"] == 0
-    assert kinds(found).count("standstill") >= 4
-    assert found["theta"].max() == pytest.approx(0.5, abs=1e-8)
-    assert found["energy_residual"] < 1e-9
+    result = dx.simulate(torque=lambda t, theta, omega: -2.0 * theta, t_end=5.0, theta0=0.5, **ROCKER)
+    assert result["status"] == 0
+    assert kinds(result).count("standstill") >= 4
+    assert result["theta"].max() == pytest.approx(0.5, abs=1e-8)
+    assert result["energy_residual"] < 1e-9
 
 
 def test_a_change_point_is_a_limit():
     design = {"AB": 0.125, "BC": 0.25, "ec": 0.125, "m_slider": 1.0, "m_crank": 1.0}
-    found = dx.simulate(torque=0.05, t_end=5.0, theta0=1.0, **design)
-    assert (found["status"], found["theta"][-1]) == (2, math.pi / 2)
+    result = dx.simulate(torque=0.05, t_end=5.0, theta0=1.0, **design)
+    assert (result["status"], result["theta"][-1]) == (2, math.pi / 2)
 
 
 def test_a_crank_without_inertia_ends_before_a_dead_centre():
-    found = dx.simulate(torque=0.05, t_end=5.0, theta0=1.0, AB=0.14, BC=0.31, ec=0.06, m_slider=1.0)
-    assert found["status"] == 5
-    assert found["theta"][-1] == pytest.approx(math.pi - math.asin(0.06 / 0.17), abs=2e-4)
-    assert "effective inertia vanishes at the inner dead centre" in found["message"]
+    result = dx.simulate(torque=0.05, t_end=5.0, theta0=1.0, AB=0.14, BC=0.31, ec=0.06, m_slider=1.0)
+    assert result["status"] == 5
+    assert result["theta"][-1] == pytest.approx(math.pi - math.asin(0.06 / 0.17), abs=2e-4)
+    assert "effective inertia vanishes at the inner dead centre" in result["message"]
 
 
 def test_a_torque_that_jumps_with_the_way_of_turning_is_told():
     def brake(t, theta, omega):
         return -math.copysign(2.0, omega)
 
-    found = dx.simulate(torque=brake, t_end=5.0, omega_start=5.0, **PRESS)
-    assert found["status"] == 4
-    assert "chatters at standstill" in found["message"]
+    result = dx.simulate(torque=brake, t_end=5.0, omega_start=5.0, **PRESS)
+    assert result["status"] == 4
+    assert "chatters at standstill" in result["message"]
 
 
 @pytest.mark.parametrize("masses", [{}, {"m_slider": 0.0, "m_rod": 0.0}, {"mu": 0.05}], ids=str)
@@ -287,10 +288,10 @@ def test_a_two_point_controller_chatters_and_ends_soon(torque, speed, rtol, mass
         calls.append(t)
         return torque(omega) if torque.__code__.co_argcount == 1 else torque(t, omega)
 
-    found = dx.simulate(torque=counted, t_end=2.0, rtol=rtol, **{**PRESS, **masses})
-    assert found["status"] == 4
-    assert f"jumps back and forth across omega = {speed:g}; let it" in found["message"]
-    assert found["omega"][-1] == pytest.approx(speed, rel=0.01)
+    result = dx.simulate(torque=counted, t_end=2.0, rtol=rtol, **{**PRESS, **masses})
+    assert result["status"] == 4
+    assert f"jumps back and forth across omega = {speed:g}; let it" in result["message"]
+    assert result["omega"][-1] == pytest.approx(speed, rel=0.01)
     assert len(calls) < 100_000
 
 
@@ -298,21 +299,21 @@ def test_a_two_point_controller_of_many_designs_ends_soon():
     def held(omega):
         return 5.0 if omega < 10.0 else -5.0
 
-    found = dx.simulate(torque=held, t_end=2.0, timeout=20.0, **{**PRESS, "AB": np.array([0.14, 0.12])})
-    assert found["status"].tolist() == [4, 4]
-    assert (found["t_last"] < 1.0).all()
+    result = dx.simulate(torque=held, t_end=2.0, timeout=20.0, **{**PRESS, "AB": np.array([0.14, 0.12])})
+    assert result["status"].tolist() == [4, 4]
+    assert (result["t_last"] < 1.0).all()
 
 
 def test_a_torque_that_is_steep_over_a_range_of_speeds_does_not_chatter():
-    found = dx.simulate(torque=lambda omega: 5.0 * math.tanh(50.0 * (10.0 - omega)), t_end=1.0, **PRESS)
-    assert found["status"] == 0
-    assert found["omega"][-1] == pytest.approx(10.0, abs=0.1)
+    result = dx.simulate(torque=lambda omega: 5.0 * math.tanh(50.0 * (10.0 - omega)), t_end=1.0, **PRESS)
+    assert result["status"] == 0
+    assert result["omega"][-1] == pytest.approx(10.0, abs=0.1)
 
 
 def test_too_many_steps_are_a_failure():
-    found = dx.simulate(torque=0.25, t_end=5.0, max_steps=10, **PRESS)
-    assert found["status"] == 4
-    assert "more than 10 steps" in found["message"]
+    result = dx.simulate(torque=0.25, t_end=5.0, max_steps=10, **PRESS)
+    assert result["status"] == 4
+    assert "more than 10 steps" in result["message"]
 
 
 # ---- friction ------------------------------------------------------------------------------------
@@ -334,11 +335,11 @@ def test_a_crank_starts_where_statics_says_so(theta0, way):
 
 def test_a_growing_torque_breaks_away_when_statics_says_so():
     least = dx.evaluate("T_in", theta=1.0, omega=0.0, alpha=1e-12, **PRESSED)
-    found = dx.simulate(torque=lambda t, theta, omega: t, t_end=least + 0.1, theta0=1.0, **PRESSED)
-    event = found["events"][0]
+    result = dx.simulate(torque=lambda t, theta, omega: t, t_end=least + 0.1, theta0=1.0, **PRESSED)
+    event = result["events"][0]
     assert event.kind == "break-away"
     assert event.t == pytest.approx(least, abs=1e-9)
-    assert found["theta"][-1] > 1.0
+    assert result["theta"][-1] > 1.0
     waits = dx.simulate(torque=lambda t, theta, omega: t, t_end=0.9 * least, theta0=1.0, **PRESSED)
     assert (waits["status"], waits["theta"][-1], waits["t"][-1]) == (0, 1.0, 0.9 * least)
     assert "at rest" in waits["message"]
@@ -347,61 +348,61 @@ def test_a_growing_torque_breaks_away_when_statics_says_so():
 def test_a_brake_stalls():
     """All kinetic energy goes into the brake and the friction; what is left cannot move the crank."""
     design = {**PRESS, "mu": 0.3, "F_X": 50.0}
-    found = dx.simulate(torque=-0.1, t_end=20.0, theta0=0.8, omega_start=6.0, **design)
-    assert (found["status"], kinds(found)[-1]) == (1, "standstill")
-    assert found["t"][-1] == found["events"][-1].t < 20.0
+    result = dx.simulate(torque=-0.1, t_end=20.0, theta0=0.8, omega_start=6.0, **design)
+    assert (result["status"], kinds(result)[-1]) == (1, "standstill")
+    assert result["t"][-1] == result["events"][-1].t < 20.0
     start = dx.evaluate("kinetic_energy", theta=0.8, omega=6.0, **PRESS)
-    assert found["work"] == pytest.approx(-start, rel=1e-9)
-    assert found["energy_residual"] < 1e-9
+    assert result["work"] == pytest.approx(-start, rel=1e-9)
+    assert result["energy_residual"] < 1e-9
 
 
 def test_friction_on_a_slide_without_a_rod_angle_is_coulombs():
     """A rod so long that the guide feels the load across alone: |N| = F_X, the work is mu F_X |dY|."""
     design = {"AB": 0.1, "BC": 1e7, "ec": 0.0, "I_crank": 0.01, "mu": 0.1, "F_X": 30.0}
-    found = dx.simulate(torque=0.0, t_end=1.0, theta0=0.5, omega_start=20.0, **design)
-    theta = found["theta"][-1]
+    result = dx.simulate(torque=0.0, t_end=1.0, theta0=0.5, omega_start=20.0, **design)
+    theta = result["theta"][-1]
     turns, rest = divmod(theta, math.pi)
     path = 2.0 * turns + (1.0 - math.cos(rest)) - (1.0 - math.cos(0.5))
-    assert found["work"] == pytest.approx(-0.1 * 30.0 * 0.1 * path, rel=1e-6)
+    assert result["work"] == pytest.approx(-0.1 * 30.0 * 0.1 * path, rel=1e-6)
 
 
 def test_energy_with_friction_through_every_kink():
-    found = dx.simulate(torque=lambda t, theta, omega: 4.0 * math.sin(5.0 * t), t_end=4.0, **PRESSED)
-    assert found["status"] == 0
-    assert {"dead centre", "standstill", "break-away"} <= set(kinds(found))
-    assert found["energy_residual"] < 1e-9
+    result = dx.simulate(torque=lambda t, theta, omega: 4.0 * math.sin(5.0 * t), t_end=4.0, **PRESSED)
+    assert result["status"] == 0
+    assert {"dead centre", "standstill", "break-away"} <= set(kinds(result))
+    assert result["energy_residual"] < 1e-9
 
 
 def test_kinks_at_one_instant_are_all_met():
     """With ec = 0 and no rod mass the normal force changes its side just at the dead centres."""
     design = {"AB": 0.14, "BC": 0.31, "ec": 0.0, "m_crank": 1.0, "m_slider": 1.0, "mu": 0.3}
-    found = dx.simulate(torque=0.05, t_end=3.0, **design)
-    told = [event.theta / math.pi for event in found["events"] if event.kind == "dead centre"]
-    assert told == pytest.approx([1.0, 2.0, 3.0, 4.0][: len(told)], abs=1e-12)
-    assert len(told) >= 4
-    assert found["energy_residual"] < 1e-9
+    result = dx.simulate(torque=0.05, t_end=3.0, **design)
+    message = [event.theta / math.pi for event in result["events"] if event.kind == "dead centre"]
+    assert message == pytest.approx([1.0, 2.0, 3.0, 4.0][: len(message)], abs=1e-12)
+    assert len(message) >= 4
+    assert result["energy_residual"] < 1e-9
 
 
 def test_a_jam_on_the_way_is_told_at_once():
     """Next to a change point the rod is nearly across: |N| grows without bound."""
-    found = dx.simulate(torque=0.5, t_end=2.0, omega_start=10.0, mu=0.1, **{**PRESS, "BC": 0.2 + 1e-8})
-    assert (found["status"], kinds(found)[-1]) == (3, "friction jams")
-    assert "no forces balance" in found["message"]
+    result = dx.simulate(torque=0.5, t_end=2.0, omega_start=10.0, mu=0.1, **{**PRESS, "BC": 0.2 + 1e-8})
+    assert (result["status"], kinds(result)[-1]) == (3, "friction jams")
+    assert "no forces balance" in result["message"]
     design = {"AB": 0.14, "BC": 0.21, "ec": 0.06, "I_crank": 0.05, "m_slider": 0.01, "mu": 1.5, "F_Y": -3.0}
-    found = dx.simulate(torque=2.0, t_end=5.0, theta0=-0.1, omega_start=5.0, **design)
-    assert "two sets of forces balance" in found["message"]
+    result = dx.simulate(torque=2.0, t_end=5.0, theta0=-0.1, omega_start=5.0, **design)
+    assert "two sets of forces balance" in result["message"]
 
 
 def test_an_angle_that_is_a_dead_centre_is_both():
-    found = dx.simulate(torque=0.25, t_end=3.0, until=math.pi - math.asin(0.06 / 0.17), **PRESS)
-    assert kinds(found) == ["dead centre", "angle"]
+    result = dx.simulate(torque=0.25, t_end=3.0, until=math.pi - math.asin(0.06 / 0.17), **PRESS)
+    assert kinds(result) == ["dead centre", "angle"]
 
 
 def test_friction_that_jams_is_told():
     design = {"AB": 0.14, "BC": 0.21, "ec": 0.06, "I_crank": 0.001, "mu": 2.0, "F_Y": -10.0}
-    found = dx.simulate(torque=1.0, t_end=5.0, theta0=0.9, omega_start=2.0, **design)
-    assert (found["status"], kinds(found)) == (3, ["friction jams"])
-    assert "balance" in found["message"]
+    result = dx.simulate(torque=1.0, t_end=5.0, theta0=0.9, omega_start=2.0, **design)
+    assert (result["status"], kinds(result)) == (3, ["friction jams"])
+    assert "balance" in result["message"]
 
 
 # ---- what is told --------------------------------------------------------------------------------
@@ -413,30 +414,32 @@ def test_names_are_those_of_evaluate():
     def load(t, theta, omega):
         return 3.0 + t
 
-    found = dx.simulate(torque=0.25, t_end=1.0, names=names, F_Y=load, mu=0.1, **PRESS)
-    state = {"theta": found["theta"], "omega": found["omega"], "alpha": found["alpha"]}
-    again = dx.evaluate(names, **state, F_Y=3.0 + found["t"], mu=0.1, **PRESS)
+    result = dx.simulate(torque=0.25, t_end=1.0, names=names, F_Y=load, mu=0.1, **PRESS)
+    state = {"theta": result["theta"], "omega": result["omega"], "alpha": result["alpha"]}
+    again = dx.evaluate(names, **state, F_Y=3.0 + result["t"], mu=0.1, **PRESS)
     for name in names:
-        np.testing.assert_array_equal(found[name], again[name])
+        np.testing.assert_array_equal(result[name], again[name])
 
 
 def test_the_histories():
-    found = dx.simulate(torque=0.25, t_end=1.0, **PRESS)
-    assert list(found)[:4] == ["t", "theta", "omega", "alpha"]
-    assert found["t"].shape == found["theta"].shape == (1001,)
-    assert (found["t"][0], found["t"][-1]) == (0.0, 1.0)
+    result = dx.simulate(torque=0.25, t_end=1.0, **PRESS)
+    assert list(result)[:4] == ["t", "theta", "omega", "alpha"]
+    assert result["t"].shape == result["theta"].shape == (1001,)
+    assert (result["t"][0], result["t"][-1]) == (0.0, 1.0)
     few = dx.simulate(torque=0.25, t_end=1.0, times=[0.0, 0.25, 1.0], **PRESS)
-    np.testing.assert_allclose(few["theta"], found["theta"][[0, 250, 1000]], rtol=1e-14)
-    both = found["solution"](np.array([[1.0, 0.25]]))
-    np.testing.assert_allclose(both["omega"], found["omega"][[1000, 250]][None], rtol=1e-14)
+    np.testing.assert_allclose(few["theta"], result["theta"][[0, 250, 1000]], rtol=1e-14)
+    both = result["solution"](np.array([[1.0, 0.25]]))
+    np.testing.assert_allclose(both["omega"], result["omega"][[1000, 250]][None], rtol=1e-14)
     np.testing.assert_allclose(
-        np.gradient(found["omega"], found["t"])[1:-1], found["alpha"][1:-1], atol=1e-3 * found["alpha"].max()
+        np.gradient(result["omega"], result["t"])[1:-1],
+        result["alpha"][1:-1],
+        atol=1e-3 * result["alpha"].max(),
     )
-    shown = repr(found)
+    shown = repr(result)
     assert "reached t_end = 1 s" in shown
     assert "dead centre (inner)" in shown
     assert len(shown.splitlines()) < 24
-    assert "solution(t)" in repr(found["solution"])
+    assert "solution(t)" in repr(result["solution"])
 
 
 def test_a_load_given_as_a_function_is_the_same_as_a_number():
@@ -521,19 +524,19 @@ def test_a_torque_without_a_value_later_is_told_when_it_is_reached():
 
 
 def test_the_solution_ends_with_the_motion():
-    found = dx.simulate(torque=0.25, t_end=1.0, until=1.0, **PRESS)
+    result = dx.simulate(torque=0.25, t_end=1.0, until=1.0, **PRESS)
     with pytest.raises(ValueError, match="where the motion ends"):
-        found["solution"](1.0)
+        result["solution"](1.0)
 
 
 @pytest.mark.parametrize("mu", [0.0, 0.1])
 def test_a_simulation_can_be_pickled(mu):
-    found = dx.simulate(torque=lambda t, theta, omega: 0.4 - 0.01 * omega, t_end=1.0, mu=mu, **PRESS)
-    again = pickle.loads(pickle.dumps(found))
-    assert type(again) is type(found)
-    assert again["events"] == found["events"]
+    result = dx.simulate(torque=lambda t, theta, omega: 0.4 - 0.01 * omega, t_end=1.0, mu=mu, **PRESS)
+    again = pickle.loads(pickle.dumps(result))
+    assert type(again) is type(result)
+    assert again["events"] == result["events"]
     t = np.linspace(0.0, again["t"][-1], 11)
-    np.testing.assert_array_equal(again["solution"](t)["omega"], found["solution"](t)["omega"])
+    np.testing.assert_array_equal(again["solution"](t)["omega"], result["solution"](t)["omega"])
 
 
 def test_scipy_is_not_loaded_before_it_is_needed():
@@ -547,9 +550,9 @@ def test_scipy_is_not_loaded_before_it_is_needed():
 def test_a_start_at_rest_has_the_load_of_the_way_in_which_it_starts(torque):
     """Without friction the drive torque is the torque given, also at the instant of the start."""
     load = dx.over_Y([0.1, 0.3], [-5.0, -5.0], inward=[7.0, 7.0])
-    found = dx.simulate(
+    result = dx.simulate(
         torque=torque, t_end=1e-3, theta0=1.0, omega_start=0.0, names=["T_in"], times=[0.0, 1e-3],
         ec=0.01, AB=0.05, BC=0.2, m_slider=2.0, I_crank=0.05, F_Y=load,
     )  # fmt: skip
-    np.testing.assert_allclose(found["T_in"], torque, rtol=1e-9)
-    assert found["alpha"][0] == pytest.approx(found["alpha"][1], rel=1e-3)
+    np.testing.assert_allclose(result["T_in"], torque, rtol=1e-9)
+    assert result["alpha"][0] == pytest.approx(result["alpha"][1], rel=1e-3)

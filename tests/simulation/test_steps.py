@@ -34,9 +34,9 @@ def test_a_step_where_one_estimate_vanishes():
     theta, omega = true_end(ISSUE, *START.values(), 1.0, 800)
     for design in (ISSUE, {**ISSUE, "m_slider": np.array([ISSUE["m_slider"]])}):
         for rtol in (3e-6, 1e-6, 3e-7):
-            found = dx.simulate(t_end=1.0, rtol=rtol, times=[1.0], **START, **design)
-            assert abs(found["theta"].item() - theta) < rtol
-            assert abs(found["omega"].item() - omega) < 100.0 * rtol
+            result = dx.simulate(t_end=1.0, rtol=rtol, times=[1.0], **START, **design)
+            assert abs(result["theta"].item() - theta) < rtol
+            assert abs(result["omega"].item() - omega) < 100.0 * rtol
 
 
 @pytest.mark.thorough
@@ -56,10 +56,10 @@ def fast(t, theta, omega):
 
 def test_an_unusual_energy_residual_ends_the_message(monkeypatch):
     monkeypatch.setattr("desaxe.simulation.history.TOLD", 1e-9)
-    told = dx.simulate(t_end=1.0, rtol=1e-6, **START | {"torque": fast}, **ISSUE)
-    worst = f"{told['energy_residual']:.2g}"
-    assert told["message"].startswith(f"reached t_end = 1 s; energy_residual {worst}: repeat with rtol")
-    assert told["status"] == 0
+    message = dx.simulate(t_end=1.0, rtol=1e-6, **START | {"torque": fast}, **ISSUE)
+    worst = f"{message['energy_residual']:.2g}"
+    assert message["message"].startswith(f"reached t_end = 1 s; energy_residual {worst}: repeat with rtol")
+    assert message["status"] == 0
     two = START | ISSUE | {"torque": fast, "ec": [0.0, 0.01], "mu": 0.1}
     each = dx.simulate(t_end=0.2, rtol=1e-3, **two)
     assert "in 2 of 2 designs: repeat with rtol" in each["message"]

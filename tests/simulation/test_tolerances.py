@@ -32,16 +32,16 @@ def test_a_panel_is_shortened_at_the_end_of_a_motion_though_its_part_is_less_smo
     drawn = cranks(1_000, np.random.default_rng(5))
     row = {name: np.broadcast_to(values, 1_000)[837:838] for name, values in drawn.items()}
     call = {"torque": of_all, "t_end": 1.0, "times": [1.0], **row}
-    truth, found = (dx.simulate(rtol=rtol, **call) for rtol in (3e-14, 1e-6))
-    assert found["method"] == ["panels"]
+    truth, result = (dx.simulate(rtol=rtol, **call) for rtol in (3e-14, 1e-6))
+    assert result["method"] == ["panels"]
     for name in ("theta", "omega"):
-        np.testing.assert_allclose(found[name], truth[name], rtol=HIGHEST * 1e-6)
+        np.testing.assert_allclose(result[name], truth[name], rtol=HIGHEST * 1e-6)
 
 
 def test_a_step_ends_at_each_knot_of_a_table():
     """Across one the third derivative jumps, and the estimate of a step was wrong by a thousand times."""
     drawn = {name: float(np.broadcast_to(v, 1)[0]) for name, v in cranks(1, np.random.default_rng(3)).items()}
     call = {"torque": TABLE, "t_end": 0.5, "times": [0.5], **drawn}
-    truth, found = (dx.simulate(rtol=rtol, **call) for rtol in (3e-14, 1e-10))
+    truth, result = (dx.simulate(rtol=rtol, **call) for rtol in (3e-14, 1e-10))
     for name in ("theta", "omega"):
-        assert abs(found[name][0] / truth[name][0] - 1.0) < HIGHEST * 1e-10
+        assert abs(result[name][0] / truth[name][0] - 1.0) < HIGHEST * 1e-10

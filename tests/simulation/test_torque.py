@@ -36,9 +36,9 @@ def test_every_way_to_write_a_sine(way):
     plain = dx.simulate(
         torque=lambda t, theta, omega: 1.5 + 0.3 * math.sin(3.0 * t) - 0.02 * omega, t_end=0.5, **CRANKS
     )
-    found = dx.simulate(torque=way, t_end=0.5, **CRANKS)
-    np.testing.assert_allclose(found["theta"], plain["theta"], rtol=1e-9)
-    assert (found["method"] == "panels").all()
+    result = dx.simulate(torque=way, t_end=0.5, **CRANKS)
+    np.testing.assert_allclose(result["theta"], plain["theta"], rtol=1e-9)
+    assert (result["method"] == "panels").all()
 
 
 FACTOR, TABLE, FACTORS = 1.0, np.array([1.0, 2.0]), (1.0, 2.0)
@@ -78,6 +78,6 @@ def test_a_function_that_raises_ends_its_own_motions_only():
             raise ValueError("too far")
         return 1.0
 
-    found = dx.simulate(torque=limited, t_end=0.4, **{**CRANKS, "I_crank": np.array([0.01, 1.0])})
-    assert found["status"].tolist() == [4, 0]
-    assert np.isnan(found["theta"][0, -1])
+    result = dx.simulate(torque=limited, t_end=0.4, **{**CRANKS, "I_crank": np.array([0.01, 1.0])})
+    assert result["status"].tolist() == [4, 0]
+    assert np.isnan(result["theta"][0, -1])

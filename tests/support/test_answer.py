@@ -21,11 +21,11 @@ CALLS = {
 
 @pytest.mark.parametrize("name", CALLS)
 def test_an_answer_is_a_dict(name):
-    found = CALLS[name]()
-    assert isinstance(found, dict)
-    assert pickle.loads(pickle.dumps(found)) == found == dict(found)
-    lines = repr(found).splitlines()
-    assert [line.split()[0] for line in lines if not line.startswith(" ")] == list(found)
+    result = CALLS[name]()
+    assert isinstance(result, dict)
+    assert pickle.loads(pickle.dumps(result)) == result == dict(result)
+    lines = repr(result).splitlines()
+    assert [line.split()[0] for line in lines if not line.startswith(" ")] == list(result)
     assert max(map(len, lines)) < 120
 
 
@@ -80,9 +80,9 @@ def test_units_of_derivatives_are_reduced(unit, by, quotient):
 
 def test_an_answer_of_evaluate_knows_what_it_was_asked_for():
     theta = np.linspace(0.0, 1.0, 5)
-    found = dx.evaluate(["V_C"], theta=theta, omega0=1.0, **SIZES)
-    assert found.inputs["theta"] is theta
-    assert pickle.loads(pickle.dumps(found)).inputs["ec"] == 0.1
+    result = dx.evaluate(["V_C"], theta=theta, omega0=1.0, **SIZES)
+    assert result.inputs["theta"] is theta
+    assert pickle.loads(pickle.dumps(result)).inputs["ec"] == 0.1
     for loads in ({}, {"m_slider": 1.0, "F_Y": dx.over_Y([0.2, 0.4], [1.0, 2.0])}):
         still = dx.evaluate(["Y", "status"], theta=theta, **SIZES, **loads)
         assert list(still.inputs) == ["theta", *SIZES, *loads]

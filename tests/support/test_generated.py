@@ -24,5 +24,5 @@ def test_differences_are_told_line_by_line(tmp_path):
     (tmp_path / "b.py").unlink()
     (tmp_path / "c.py").write_text("old\n")
     assert made.stale() == ["a.py", "b.py", "c.py"]
-    told = [*made.diff()]
-    assert {"-2", "+two", "b.py is missing", "c.py is not wanted"} < set(told)
+    message = [*made.diff()]
+    assert {"-2", "+two", "b.py is missing", "c.py is not wanted"} < set(message)

@@ -25,11 +25,11 @@ def sweep(root, kind, **more):
 
 @pytest.fixture(scope="module")
 def stores(tmp_path_factory):
-    found = {}
+    result = {}
     for name, kind in (("grid", GRID), ("reduced", REDUCED)):
-        found[name] = tmp_path_factory.mktemp("whole") / f"{name}.zarr", kind
-        sweep(*found[name])
-    return found
+        result[name] = tmp_path_factory.mktemp("whole") / f"{name}.zarr", kind
+        sweep(*result[name])
+    return result
 
 
 def with_attribute(whole, root, name, value):
@@ -50,9 +50,9 @@ def test_chunks_that_are_none_are_refused_in_a_line(stores, kind, value, tmp_pat
     with_attribute(whole, root, "chunks", value)
     with pytest.raises(
         FileExistsError, match=r"press\.zarr: .*its chunks are .*overwrite=True replaces it"
-    ) as told:
+    ) as message:
         sweep(root, kind)
-    assert "\n" not in str(told.value)
+    assert "\n" not in str(message.value)
     assert sweep(root, kind, overwrite=True).identical(sweep(whole, kind))
     assert os.listdir(tmp_path) == [root.name]
 

@@ -268,8 +268,8 @@ def test_a_second_sweep_refuses(whole):
 
 
 def test_the_margin_comes_beside_a_reduction():
-    found = dx.sweep("a_C", reduce={"theta": "absmax"}, **INPUTS)
-    np.testing.assert_array_equal(found["margin"], dx.grid(NAMES, **INPUTS)["margin"])
+    result = dx.sweep("a_C", reduce={"theta": "absmax"}, **INPUTS)
+    np.testing.assert_array_equal(result["margin"], dx.grid(NAMES, **INPUTS)["margin"])
 
 
 def test_a_sweep_of_numbers_alone_is_one_point(tmp_path):

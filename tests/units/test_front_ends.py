@@ -32,9 +32,9 @@ def labelled(values, unit):
 
 
 def series(values, unit):
-    found = pd.Series(np.asarray(values, float))
-    found.attrs["units"] = unit
-    return found
+    result = pd.Series(np.asarray(values, float))
+    result.attrs["units"] = unit
+    return result
 
 
 # Forms of values in a unit; the last two alone say nothing of it and are in the caller's units.
@@ -88,8 +88,8 @@ def test_values_of_a_form_are_the_same_number_everywhere(front, form):
     own = units if form in PLAIN else ("deg", "mm")
     theta, ec = (FORMS[form](VALUES[unit], unit) for unit in own)
     expected = position(np.array(VALUES["rad"]), np.array(VALUES["m"]))
-    found = np.asarray(call(theta, ec), float)
-    assert found == pytest.approx(expected if found.ndim else expected[0], rel=1e-14)
+    result = np.asarray(call(theta, ec), float)
+    assert result == pytest.approx(expected if result.ndim else expected[0], rel=1e-14)
 
 
 @pytest.mark.parametrize("front", FRONTS)
@@ -117,9 +117,9 @@ def test_a_machine_and_a_scene_hold_the_same_numbers(form):
 @pytest.mark.parametrize("text", ["60 deg", "60deg", "1.0471975511965976", "0.16666666666666666 turn"])
 def test_the_command_line_reads_the_same_numbers(text, capsys):
     assert main(["evaluate", "Y", f"theta={text}", "ec=10mm", "AB=40 mm", "BC=0.13", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)["Y"]
-    assert found == dx.evaluate("Y", theta=text, ec=0.01, **SIZES)
-    assert found == pytest.approx(position(math.pi / 3, 0.01), rel=1e-14)
+    result = json.loads(capsys.readouterr().out)["Y"]
+    assert result == dx.evaluate("Y", theta=text, ec=0.01, **SIZES)
+    assert result == pytest.approx(position(math.pi / 3, 0.01), rel=1e-14)
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -141,8 +141,8 @@ def test_a_measure_at_a_plain_angle_is_in_the_callers_units():
     expected = 1e3 * position(math.pi / 3, 0.01)
     grid = machine.grid(["Y"], theta=[0, 60, 90], reduce=[("at", 60, "Y")])
     assert float(grid["Y_at_60_deg"]) == pytest.approx(expected, rel=1e-14)
-    found = machine.optimize(minimize=("at", 60, "Y"), over={"AB": (40, 41)})
-    assert found["value"] == pytest.approx(expected, rel=1e-9)
+    result = machine.optimize(minimize=("at", 60, "Y"), over={"AB": (40, 41)})
+    assert result["value"] == pytest.approx(expected, rel=1e-9)
     assert machine.tolerance(("at", 60, "Y"), ec=dx.plus_minus(10, 0.1))["value"] == pytest.approx(
         expected, rel=1e-5
     )
@@ -159,16 +159,16 @@ def test_the_command_line_reads_plain_numbers_of_a_fit_in_the_units_of_the_scene
     rows = [f"{angle},{value}" for angle, value in zip(angles, measured, strict=True)]
     data.write_text("\n".join([heads, *rows]))
     assert main(["fit", str(data), "--machine", str(scene), "sigma.Y=0.05", "over.AB=35:50", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["value"]["AB"] == pytest.approx(40.0, rel=1e-3)
-    assert found["chi_square"] == pytest.approx(angles.size / (angles.size - 1), rel=1e-2)
+    result = json.loads(capsys.readouterr().out)
+    assert result["value"]["AB"] == pytest.approx(40.0, rel=1e-3)
+    assert result["chi_square"] == pytest.approx(angles.size / (angles.size - 1), rel=1e-2)
 
 
 def test_a_scene_reads_a_plain_angle_of_a_measure_in_its_units():
     table = {"units": UNITS, "outputs": ["Y"], "mechanism": {"ec": 10, "AB": 40, "BC": 130}}
     scene = dx.scene({**table, "motion": {"theta": [0, 60, 90]}, "reduce": {"theta": [["at", 60, "Y"]]}})
-    found = scene.run().dataset["Y_at_60_deg"]
-    assert float(found) == pytest.approx(1e3 * position(math.pi / 3, 0.01), rel=1e-14)
+    result = scene.run().dataset["Y_at_60_deg"]
+    assert float(result) == pytest.approx(1e3 * position(math.pi / 3, 0.01), rel=1e-14)
 
 
 # ---- one input, one number --------------------------------------------------------------------------
@@ -428,6 +428,6 @@ def test_a_function_warns_once_of_each_kind():
 def test_the_first_call_of_an_engineer_needs_no_unit_library(words, slip):
     code = "import sys; from desaxe.cli import main; main(); print({'pint', 'numpy'} & {*sys.modules})"
     command = [sys.executable, "-c", code, "evaluate", "a_C", *words]
-    found = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert (slip in found.stderr, bool(found.stderr)) == (True, bool(slip)), found.stderr
-    assert re.match("a_C  .*\nstatus  0\nset\\(\\)$", found.stdout)
+    result = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert (slip in result.stderr, bool(result.stderr)) == (True, bool(slip)), result.stderr
+    assert re.match("a_C  .*\nstatus  0\nset\\(\\)$", result.stdout)

@@ -71,13 +71,13 @@ def test_products_have_the_sizes_of_their_terms():
 def written_units():
     """Every unit behind a number in quotes in tests, docs and examples that is one to pint."""
     files = [p for end in ("py", "md", "toml") for p in ROOT.glob(f"*/**/*.{end}") if ".venv" not in p.parts]
-    found = {
+    result = {
         text
         for path in files
         if path.relative_to(ROOT).parts[0] in ("tests", "docs", "examples", "notebooks", "src")
         for text in re.findall(r"""["']([-+.\d][^"'\n]{1,30})["']""", path.read_text("utf-8"))
     }
-    for text in found:
+    for text in result:
         try:
             unit = split_quantity(text)[1]
             by_pint(terms_of(unit) if unit else [])

@@ -132,13 +132,13 @@ def _answer(call: str, machine: Any, quantities: list[Any], arguments: dict[str,
     from ..loads.absent import warn_that_nothing_acts
 
     (names,) = quantities
-    given = {**arguments, **(machine if hasattr(machine, "in_units") else {})}
+    inputs = {**arguments, **(machine if hasattr(machine, "in_units") else {})}
     try:
         answer = machine.evaluate(list(dict.fromkeys([*names, "status"])), **arguments)
     except TypeError:
         answer = machine.evaluate(names, **arguments)
-    if "sliders" not in given:
-        warn_that_nothing_acts(names, given)
+    if "sliders" not in inputs:
+        warn_that_nothing_acts(names, inputs)
     return answer
 
 

@@ -74,8 +74,10 @@ def source_of(file: Path) -> Source:
     return Source(tuple(map(_statement, _STATEMENT.finditer(code))), imports)
 
 
-def _statement(found: re.Match[str]) -> Statement:
-    return Statement(tuple(found[2].split(", ")), bool(found[1]), found[0].strip("\n"), words_of(found[0]))
+def _statement(result: re.Match[str]) -> Statement:
+    return Statement(
+        tuple(result[2].split(", ")), bool(result[1]), result[0].strip("\n"), words_of(result[0])
+    )
 
 
 def functions_of(file: Path) -> dict[str, str]:

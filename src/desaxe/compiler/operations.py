@@ -203,9 +203,9 @@ def result_type(operation: Operation, types: tuple[str, ...]) -> str:
     """The type of the result for these argument types; TypeError where they do not fit."""
     generic = ""
     for letter, given in zip(operation.signature, types, strict=False):
-        wanted = TYPES.get(letter) or generic or given
+        requested = TYPES.get(letter) or generic or given
         if letter == "T":
             generic = given
-        if wanted != given:
-            raise TypeError(f"{operation.name} wants {wanted}, got {given}")
+        if requested != given:
+            raise TypeError(f"{operation.name} wants {requested}, got {given}")
     return TYPES.get(operation.signature[-1]) or generic

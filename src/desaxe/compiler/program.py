@@ -93,8 +93,8 @@ def validate(program: Program) -> Program:
     for output in program.outputs:
         if output not in types:
             raise ProgramError(f"output {output!r} is never assigned")
-    wanted = reached(program)
-    unused = [line.name for line in program.lines if line.name not in wanted]
+    requested = reached(program)
+    unused = [line.name for line in program.lines if line.name not in requested]
     if unused:
         raise ProgramError(f"unused lines: {', '.join(unused)}")
     return program
@@ -131,20 +131,20 @@ def tables_in(program: Program) -> list[str]:
 
 def reached(program: Program) -> set[str]:
     """The names that the outputs depend on, themselves included."""
-    wanted = set(program.outputs)
+    requested = set(program.outputs)
     for line in reversed(program.lines):
-        if line.name in wanted:
-            wanted.update(names_in(line.args))
-    return wanted
+        if line.name in requested:
+            requested.update(names_in(line.args))
+    return requested
 
 
 def reaching(lines: tuple[Line, ...], outputs: Iterable[str]) -> tuple[Line, ...]:
     """The lines that the outputs need."""
-    wanted = set(outputs)
+    requested = set(outputs)
     for line in reversed(lines):
-        if line.name in wanted:
-            wanted.update(names_in(line.args))
-    return tuple(line for line in lines if line.name in wanted)
+        if line.name in requested:
+            requested.update(names_in(line.args))
+    return tuple(line for line in lines if line.name in requested)
 
 
 def renamed_temporaries(program: Program, order: Iterable[str]) -> Program:

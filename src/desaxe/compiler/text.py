@@ -86,8 +86,8 @@ def _wants_parentheses(outer: int, inner: int, position: int, op: str) -> bool:
 
 def _inside(argument: Argument, text: dict[str, tuple[str, int]]) -> tuple[str, int]:
     """The text of an argument: the expression of a temporary, else the name or constant."""
-    found = text.get(argument) if isinstance(argument, str) else None
-    return found or _plain(argument)
+    result = text.get(argument) if isinstance(argument, str) else None
+    return result or _plain(argument)
 
 
 def _plain(value: Argument) -> tuple[str, int]:
@@ -157,18 +157,18 @@ class ProgramText:
 
     def read(self, outputs: Sequence[str] | None = None) -> Program:
         """The program of these outputs (all without): only what they reach is parsed."""
-        wanted = list(self.outputs() if outputs is None else outputs)
-        found: dict[str, _Parsed] = {}
-        stack = [name for name in wanted if name not in self.inputs]
+        requested = list(self.outputs() if outputs is None else outputs)
+        result: dict[str, _Parsed] = {}
+        stack = [name for name in requested if name not in self.inputs]
         while stack:
             name = stack.pop()
-            if name in found:
+            if name in result:
                 continue
-            found[name] = self._line_of(name)
-            stack += [used for used in found[name].names if used not in found and used not in self.inputs]
-        ordered = sorted(found.items(), key=lambda item: item[1].place)
+            result[name] = self._line_of(name)
+            stack += [used for used in result[name].names if used not in result and used not in self.inputs]
+        ordered = sorted(result.items(), key=lambda item: item[1].place)
         lines: list[Line] = []
-        used = set(wanted)
+        used = set(requested)
         for name, parsed in ordered:
             if name not in self._read:
                 self._read[name] = _Reader(name, self._types).lines_of(parsed.tree)
@@ -176,7 +176,7 @@ class ProgramText:
             used.update(parsed.names)
         notes = {name: line.note for name, line in ordered if line.note is not None}
         inputs = tuple(name for name in self.inputs if name in used)
-        return Program(inputs, tuple(lines), tuple(wanted), notes)
+        return Program(inputs, tuple(lines), tuple(requested), notes)
 
     def _line_of(self, name: str) -> "_Parsed":
         """The line of a name, parsed when it is first asked for."""

@@ -60,8 +60,8 @@ class ShaftCycle(Cycle):
         if motion is not None:
             state = {**motion(theta)}
         sliders = self.sliders.replaced({n: v for n, v in other.items() if n not in STATE})
-        found = sliders.evaluate(list(names), {**state, "theta": theta})
-        return {name: np.broadcast_to(found[name], theta.shape) for name in names}
+        result = sliders.evaluate(list(names), {**state, "theta": theta})
+        return {name: np.broadcast_to(result[name], theta.shape) for name in names}
 
     def edges(self, names: Sequence[str], motion: Motion | None = None, **other: Any) -> Array:
         """The angles between which all sliders are smooth, in one row."""
@@ -100,9 +100,9 @@ class ShaftCycle(Cycle):
             free &= ~mine
             places = (angles - self.sliders.members[k].firing).reshape(1, -1)
             moved = Cycle.moves(own, _bases(names), places)
-            found = {name: shift.reshape(angles.shape) for name, shift in moved.items()}
-            found |= {f"{name}[{k}]": np.ones(angles.shape) for name in ("phase", "bank")}
-            for name, shift in found.items():
+            result = {name: shift.reshape(angles.shape) for name, shift in moved.items()}
+            result |= {f"{name}[{k}]": np.ones(angles.shape) for name in ("phase", "bank")}
+            for name, shift in result.items():
                 moves[name] = np.where(mine, shift, moves.get(name, 0.0))
         return moves
 
@@ -133,15 +133,15 @@ class ShaftTurn(Turn, ShaftCycle):
 
     def slopes_of(self, name: str) -> dict[str, str]:
         """The derivatives of a quantity, by the inputs that it depends on."""
-        found, slopes = {}, dict.fromkeys(STATE, 1.0)
+        result, slopes = {}, dict.fromkeys(STATE, 1.0)
         for parameter in self.parameters:
             try:
                 terms = self.sliders.terms(f"{name}_wrt_{parameter}", slopes)
             except ValueError:  # a motion does not depend on masses
                 continue
             if terms:
-                found[parameter] = f"{name}_wrt_{parameter}"
-        return found
+                result[parameter] = f"{name}_wrt_{parameter}"
+        return result
 
     def floor(self, name: str) -> float:
         """The magnitude of a sum that is rounding beside what a single slider adds."""

@@ -51,23 +51,23 @@ class Sliders(SliderSums):
         cycles = [ShaftCycle(caller, self, inputs) for inputs in each]
         return {n: f"{name}_wrt_{n}" for n in rows}, shape, cycles
 
-    def peak(self, name: str, kind: str, theta: Any, given: Mapping[str, Any]) -> Answer:
+    def peak(self, name: str, kind: str, theta: Any, inputs: Mapping[str, Any]) -> Answer:
         """`desaxe.peak` of the shaft; theta: a range of angles, None for the cycle."""
         with using(self.definitions):
-            shape, rows = _rows(given)
+            shape, rows = _rows(inputs)
 
             def turn_of(k: int) -> ShaftTurn:
-                return ShaftTurn("peak", self, {**given, **{n: r[k].item() for n, r in rows.items()}}, theta)
+                return ShaftTurn("peak", self, {**inputs, **{n: r[k].item() for n, r in rows.items()}}, theta)
 
             size = int(np.prod(shape))
             if not size:
                 raise ValueError("peak: an empty array; expected at least one crankshaft")
-            turn, numbers = turn_of(0), {n: v for n, v in given.items() if not callable(v)}
+            turn, numbers = turn_of(0), {n: v for n, v in inputs.items() if not callable(v)}
 
             def values(names: Sequence[str], angles: Any, row: Any) -> dict[str, Any]:
                 state = {**numbers, **{n: r[row] for n, r in rows.items()}, "theta": angles}
-                found: dict[str, Any] = turn.sliders.evaluate(list(names), state)
-                return {n: np.broadcast_to(v, np.shape(angles)) for n, v in found.items()}
+                result: dict[str, Any] = turn.sliders.evaluate(list(names), state)
+                return {n: np.broadcast_to(v, np.shape(angles)) for n, v in result.items()}
 
             first = np.array(turn.ends) if self.smooth else None
             each = [turn_of(k).edges([name]) if first is None else first for k in range(size)]
@@ -75,13 +75,15 @@ class Sliders(SliderSums):
             for k, own in enumerate(each):
                 edges[k, : len(own)] = own
             columns = {n: r[:, None] for n, r in rows.items()}
-            floor = self.floor(name, {**given, **columns, "theta": turn.samples})
-            found = extremes_of(turn_of, values, edges, floor, name, kind)
-            return Answer(_shaped(found, shape), partial(units_of_extreme, name), PeakStatus)
+            floor = self.floor(name, {**inputs, **columns, "theta": turn.samples})
+            result = extremes_of(turn_of, values, edges, floor, name, kind)
+            return Answer(_shaped(result, shape), partial(units_of_extreme, name), PeakStatus)
 
-    def motion(self, ask: Ask, given: Mapping[str, Any], starts: Mapping[str, Any], times: Any) -> Simulation:
+    def motion(
+        self, ask: Ask, inputs: Mapping[str, Any], starts: Mapping[str, Any], times: Any
+    ) -> Simulation:
         """`desaxe.simulate` of the shaft."""
-        here = self.replaced({n: v for n, v in given.items() if v is not None})
+        here = self.replaced({n: v for n, v in inputs.items() if v is not None})
         turn = ShaftTurn("simulate", here, {})
         if turn.has_friction or turn.margin <= 0.0:
             raise ValueError("simulate: the crank of several sliders turns fully, without friction: "
@@ -109,7 +111,7 @@ class Sliders(SliderSums):
         for option, value in options.items():
             if value is not None:
                 raise TypeError(f"{option}= is not there for a crankshaft: reduce or store the Dataset")
-        wanted = tuple(dict.fromkeys([*((names,) if isinstance(names, str) else several(names)), *ALWAYS]))
+        requested = tuple(dict.fromkeys([*((names,) if isinstance(names, str) else several(names)), *ALWAYS]))
         axes = {n: v if callable(v) else number(n, v) for n, v in inputs.items() if v is not None}
         arrays = {n: np.asarray(v, float) for n, v in axes.items() if not callable(v) and n != "branch"}
         dims = [n for n, array in arrays.items() if array.ndim]
@@ -117,9 +119,9 @@ class Sliders(SliderSums):
             if arrays[n].ndim > 1:
                 raise ValueError(f"{n}: a grid takes numbers and 1-d arrays, got the shape {arrays[n].shape}")
             axes[n] = arrays[n].reshape([-1 if n == d else 1 for d in dims])
-        found = self.evaluate(wanted, axes, accuracy)
+        result = self.evaluate(requested, axes, accuracy)
         with using(self.definitions):
-            rows = {n: (dims, found[n], described(n)) for n in wanted}
+            rows = {n: (dims, result[n], described(n)) for n in requested}
             return labelled(rows, arrays, 1, accuracy)
 
 
@@ -137,15 +139,15 @@ def described(name: str) -> dict[str, Any]:
     return {"units": str(unit_of(name)), "long_name": meaning}
 
 
-def _rows(given: Mapping[str, Any]) -> tuple[tuple[int, ...], dict[str, Any]]:
+def _rows(inputs: Mapping[str, Any]) -> tuple[tuple[int, ...], dict[str, Any]]:
     """The shape of the inputs that are arrays, and these as rows of it."""
-    arrays = {n: np.asarray(v) for n, v in given.items() if np.ndim(v) and not callable(v)}
+    arrays = {n: np.asarray(v) for n, v in inputs.items() if np.ndim(v) and not callable(v)}
     shape = np.broadcast_shapes(*(a.shape for a in arrays.values()))
     return shape, {n: np.broadcast_to(a, shape).ravel() for n, a in arrays.items()}
 
 
-def _shaped(found: Any, shape: tuple[int, ...]) -> Any:
+def _shaped(result: Any, shape: tuple[int, ...]) -> Any:
     """Results of several designs in their shape; numbers of a single one."""
-    if isinstance(found, dict):
-        return {n: _shaped(column, shape) for n, column in found.items()}
-    return found.reshape(shape) if shape else found.item()
+    if isinstance(result, dict):
+        return {n: _shaped(column, shape) for n, column in result.items()}
+    return result.reshape(shape) if shape else result.item()

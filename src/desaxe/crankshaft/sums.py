@@ -91,10 +91,10 @@ class ShaftState(NamedTuple):
         return {} if self.omega is None else {"omega": self.omega, "alpha": self.alpha}
 
 
-def state_of(given: Mapping[str, Any]) -> ShaftState:
+def state_of(inputs: Mapping[str, Any]) -> ShaftState:
     """The state of the shaft that these inputs are."""
-    check_common(given, 1)
-    theta, omega0, omega, alpha = (number(name, given.get(name)) for name in STATE)
+    check_common(inputs, 1)
+    theta, omega0, omega, alpha = (number(name, inputs.get(name)) for name in STATE)
     alpha = 0.0 if alpha is None else alpha
     if omega is not None or omega0 is None:
         return ShaftState(theta, omega, alpha, {"omega": 1.0})
@@ -171,12 +171,12 @@ class SliderSums:
         """The inputs of a slider in its own frame, with the gravity there."""
         if k == SHAFT:
             return {**BARE, "I_crank": self.I_shaft}
-        found, bank = dict(self.members[k].inputs), self.members[k].bank
+        result, bank = dict(self.members[k].inputs), self.members[k].bank
         for name, shares in self._gravity_along(bank).items():
             g = sum(share * self.gravity[axis] for axis, share in shares.items())
             if np.any(g):
-                found[name] = g
-        return found
+                result[name] = g
+        return result
 
     @property
     def follows_speed(self) -> bool:
@@ -205,12 +205,12 @@ class SliderSums:
 
     def numbers(self) -> dict[str, Any]:
         """The inputs that are numbers by name, of all sliders and of one, their angles, and loads."""
-        found: dict[str, Any] = {**self.gravity, "I_shaft": self.I_shaft}
+        result: dict[str, Any] = {**self.gravity, "I_shaft": self.I_shaft}
         for k, member in enumerate(self.members):
             angles = {"phase": member.phase, "bank": member.bank}
-            found |= {f"{name}[{k}]": value for name, value in {**member.inputs, **angles}.items()}
-            found |= {n: v for n, v in member.inputs.items() if n != "branch"}
-        return found
+            result |= {f"{name}[{k}]": value for name, value in {**member.inputs, **angles}.items()}
+            result |= {n: v for n, v in member.inputs.items() if n != "branch"}
+        return result
 
     @staticmethod
     def _gravity_along(bank: Any) -> dict[str, dict[str, Any]]:
@@ -221,23 +221,23 @@ class SliderSums:
     def evaluate(
         self,
         names: str | Sequence[str],
-        given: Mapping[str, Any],
+        inputs: Mapping[str, Any],
         accuracy: Any = "standard",
         threads: int | None = None,
         out: Any = None,
     ) -> Any:
         """`desaxe.evaluate` of the shaft: its state, and inputs that replace those of the sliders."""
-        wanted = (names,) if isinstance(names, str) else several(names)
-        state = state_of(given)
-        here = self.replaced({n: v for n, v in given.items() if n not in STATE and v is not None})
+        requested = (names,) if isinstance(names, str) else several(names)
+        state = state_of(inputs)
+        here = self.replaced({n: v for n, v in inputs.items() if n not in STATE and v is not None})
         with using(self.definitions):
-            found = Values(here._values(wanted, state, accuracy, threads))
-            found.become(units_by_name(found), None)
+            result = Values(here._values(requested, state, accuracy, threads))
+            result.become(units_by_name(result), None)
         if out is not None:
-            for name, buffer in (out if isinstance(out, Mapping) else {wanted[0]: out}).items():
-                buffer[...] = found[name]
+            for name, buffer in (out if isinstance(out, Mapping) else {requested[0]: out}).items():
+                buffer[...] = result[name]
             return out
-        return found[names] if isinstance(names, str) else found
+        return result[names] if isinstance(names, str) else result
 
     def _values(
         self, names: Sequence[str], state: ShaftState, accuracy: Any, threads: int | None
@@ -251,16 +251,16 @@ class SliderSums:
             for k in range(len(self.members)):
                 asked.setdefault(k, {})[name] = None
         values = {}
-        for k, wanted in asked.items():
+        for k, requested in asked.items():
             angle = None if state.theta is None else state.theta - (0.0 if k < 0 else self.members[k].firing)
             inputs = {**self.inputs_of(k), **state.inputs}
-            values[k] = evaluate([*wanted], theta=angle, accuracy=accuracy, threads=threads, **inputs)
-        found = {name: self._fact(name, values, state) for name in names if name in FACTS}
+            values[k] = evaluate([*requested], theta=angle, accuracy=accuracy, threads=threads, **inputs)
+        result = {name: self._fact(name, values, state) for name in names if name in FACTS}
         for name, own in terms.items():
             bank = {k: self.members[k].bank for k, _ in own if k != SHAFT} | {SHAFT: 0.0}
             total = sum(values[k][q] * share.at(bank[k]) for (k, q), share in own.items())
-            found[name] = np.where(state.stalled, np.nan, total) if np.any(state.stalled) else total
-        return _together({name: found[name] for name in names}, state)
+            result[name] = np.where(state.stalled, np.nan, total) if np.any(state.stalled) else total
+        return _together({name: result[name] for name in names}, state)
 
     def _fact(self, name: str, values: Mapping[int, Any], state: ShaftState) -> Any:
         """The speed, the worst status, the least margin."""
@@ -283,11 +283,11 @@ class SliderSums:
         if len(parameters) > 1 and any(indexed(p)[0] in (*STATE, *POSITION, *GRAVITY) for p in parameters):
             raise ValueError(f"{name!r}: this derivative is not derived")
         for parameter in parameters:
-            found: Terms = {}
+            result: Terms = {}
             for (k, q), share in terms.items():
                 for own, part in self._by(k, q, share, parameter, slopes):
-                    found[k, own] = Share(*map(sum, zip(found.get((k, own), Share()), part, strict=True)))
-            terms = found
+                    result[k, own] = Share(*map(sum, zip(result.get((k, own), Share()), part, strict=True)))
+            terms = result
         return terms
 
     def _quantity(self, base: str) -> Terms:
@@ -391,14 +391,14 @@ def _moved(member: ShaftSlider, name: str, value: Any) -> ShaftSlider:
     return member._replace(**{name: value}, firing=firing)
 
 
-def _together(found: dict[str, Any], state: ShaftState) -> dict[str, Any]:
+def _together(result: dict[str, Any], state: ShaftState) -> dict[str, Any]:
     """Arrays of one shape, where anything is one; floats else."""
-    every = (*found.values(), state.theta, state.omega, state.alpha)
+    every = (*result.values(), state.theta, state.omega, state.alpha)
     if any(hasattr(value, "dims") for value in every):
-        return found
+        return result
     shape = np.broadcast_shapes(*(np.shape(value) for value in every if value is not None))
     if not shape:
-        return {n: int(v) if n == "status" else float(v) for n, v in found.items()}
+        return {n: int(v) if n == "status" else float(v) for n, v in result.items()}
     return {
-        n: np.array(np.broadcast_to(v, shape), np.int8 if n == "status" else float) for n, v in found.items()
+        n: np.array(np.broadcast_to(v, shape), np.int8 if n == "status" else float) for n, v in result.items()
     }

@@ -57,12 +57,12 @@ def _arguments(name: str, table: Any) -> Arguments:
 
 def tables_of(made: Iterable[Definition]) -> dict[str, dict[str, Any]]:
     """The tables of definitions, normalised."""
-    found: dict[str, dict[str, Any]] = {}
+    result: dict[str, dict[str, Any]] = {}
     for own in made:
-        found[own.name] = {"expression": own.expression, "unit": own.unit, "meaning": own.meaning}
+        result[own.name] = {"expression": own.expression, "unit": own.unit, "meaning": own.meaning}
         if own.constants:
-            found[own.name]["constants"] = dict(own.constants)
-    return found
+            result[own.name]["constants"] = dict(own.constants)
+    return result
 
 
 def text_of(names: Iterable[str]) -> str:

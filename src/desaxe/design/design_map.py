@@ -47,7 +47,7 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
     known = tuple(name for name in INPUTS if name != "theta")
     check_inputs("design_map", inputs, known)
     one = isinstance(names, (str, tuple)) and bool(names)
-    wanted: Sequence[Measure] = [checked(name) for name in ([names] if one else names)]
+    requested: Sequence[Measure] = [checked(name) for name in ([names] if one else names)]
     numbers, loads = split({n: value for n, value in inputs.items() if value is not None})
     axes = {n: as_array(n, value, LENGTHS, ("design_map",)) for n, value in numbers.items()}
     for name in LENGTHS:
@@ -62,10 +62,10 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
     grids = {**axes, **dict(zip(dimensions, planes, strict=True))}
     designs = {n: np.broadcast_to(grid, shape).reshape(-1) for n, grid in grids.items()}
     variables = _feasible(designs, shape, dimensions)
-    for measure, found in measured(wanted, designs | loads, branch).items():
+    for measure, result in measured(requested, designs | loads, branch).items():
         name, meaning = _name(measure), _meaning(measure)
-        rows = {name: (found.value, _about(measure), meaning)}
-        for p, slope in found.gradient.items() if derivatives else ():
+        rows = {name: (result.value, _about(measure), meaning)}
+        for p, slope in result.gradient.items() if derivatives else ():
             rows[f"{name}_wrt_{p}"] = slope, _about(measure, p), f"{meaning}, by {p}"
         for row, (values, about, words) in rows.items():
             if row in variables and measure != "margin":
@@ -77,22 +77,22 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
         import xarray
     coordinates = {n: ((n,) if axis.ndim else (), axis, input_attributes(n)) for n, axis in axes.items()}
     about = provenance(
-        [_name(measure) for measure in wanted], axes, branch, title="offset slider-crank designs"
+        [_name(measure) for measure in requested], axes, branch, title="offset slider-crank designs"
     )
     return with_loads(xarray.Dataset(variables, coordinates, about), loads)
 
 
 def _feasible(designs: dict[str, Any], shape: tuple[int, ...], dimensions: list[str]) -> dict[str, Any]:
-    found = {
+    result = {
         n: np.reshape(v, shape) for n, v in of_arrays(*(designs[n] for n in LENGTHS)).items() if n in FEASIBLE
     }
-    kinds = np.array([KINDS.index(kind) for kind in found["kind"].flat], np.int8).reshape(shape)
+    kinds = np.array([KINDS.index(kind) for kind in result["kind"].flat], np.int8).reshape(shape)
     variables: dict[str, Any] = {
-        "margin": (dimensions, found["margin"], {"units": "m", "long_name": "margin BC - AB - |ec|"}),
-        "can_turn": (dimensions, found["can_turn"], {"long_name": "the crank turns fully"}),
+        "margin": (dimensions, result["margin"], {"units": "m", "long_name": "margin BC - AB - |ec|"}),
+        "can_turn": (dimensions, result["can_turn"], {"long_name": "the crank turns fully"}),
     }
     flags = (
-        ("status", found["status"], STATUS_FLAGS[:5], "status"),
+        ("status", result["status"], STATUS_FLAGS[:5], "status"),
         ("kind", kinds, tuple(kind.replace(" ", "_") for kind in KINDS), "how the crank can move"),
     )
     for name, codes, meanings, words in flags:

@@ -74,10 +74,10 @@ def inverse(
     if Y is not None and s is not None:
         raise TypeError("inverse: Y and s both say where the slider is; give one of them")
     at = "Y" if s is None else "s"
-    given = {at: Y if s is None else s, "ec": ec, "AB": AB, "BC": BC, "V_C": V_C, "a_C": a_C}
+    inputs = {at: Y if s is None else s, "ec": ec, "AB": AB, "BC": BC, "V_C": V_C, "a_C": a_C}
     arrays = {
         name: _input(name, value)
-        for name, value in given.items()
+        for name, value in inputs.items()
         if value is not None or name in (*INPUTS, at)
     }
     shape = broadcast_shape(arrays)
@@ -159,5 +159,5 @@ def _status(status: NDArray[np.int8], arrays: dict[str, Array], shape: tuple[int
         least = INPUTS[name].least if name in INPUTS else None
         good = np.isfinite(array) if least is None else np.isfinite(array) & (array >= least)
         bad |= ~np.broadcast_to(good, shape)
-    found = np.where(bad, np.int8(4), status)
-    return found if shape else int(found)
+    result = np.where(bad, np.int8(4), status)
+    return result if shape else int(result)

@@ -79,9 +79,9 @@ def at_angle(
     varying = {p: f"{name}_wrt_{p}" for p, v in given.items() if np.ndim(v)}
     inputs = {p: v for p, v in given.items() if p != "theta" or p in varying}
     slopes = varying if "sliders" in given else _slopes(name, inputs)
-    found = evaluate([name, *slopes.values()], branch=branch, **given)
+    result = evaluate([name, *slopes.values()], branch=branch, **given)
     shape = np.broadcast_shapes(*(np.shape(given[p]) for p in varying))
-    full = {n: np.broadcast_to(array, shape) for n, array in found.items()}
+    full = {n: np.broadcast_to(array, shape) for n, array in result.items()}
     return full[name], {p: full[slope] for p, slope in slopes.items()}
 
 
@@ -94,8 +94,8 @@ def angle_of(angle: Any) -> float:
 
 
 def _inputs(designs: Mapping[str, Any]) -> dict[str, Any]:
-    given = {p: v for p, v in designs.items() if v is not None and p in INPUTS and p != "theta"}
-    return {p: v if callable(v) else np.asarray(v, float) for p, v in given.items()}
+    inputs = {p: v for p, v in designs.items() if v is not None and p in INPUTS and p != "theta"}
+    return {p: v if callable(v) else np.asarray(v, float) for p, v in inputs.items()}
 
 
 def _slopes(name: str, inputs: Mapping[str, Any]) -> dict[str, str]:
@@ -163,36 +163,36 @@ def measured(
     measures: Iterable[Measure], designs: Mapping[str, Any], branch: int = 1
 ) -> dict[Measure, Measured]:
     """Every measure over designs: parameters by name, numbers and arrays of one shape."""
-    found: dict[Measure, Measured] = {}
-    wanted = list(dict.fromkeys(measures))
-    told = _events(wanted, designs, branch)
-    for measure in wanted:
+    result: dict[Measure, Measured] = {}
+    requested = list(dict.fromkeys(measures))
+    message = _events(requested, designs, branch)
+    for measure in requested:
         if measure == "margin":
-            found[measure] = _margin(*(np.asarray(designs[n], float) for n in LENGTHS))
+            result[measure] = _margin(*(np.asarray(designs[n], float) for n in LENGTHS))
         elif isinstance(measure, str):
-            own = None if measure in told else _own(measure, designs, branch)
-            found[measure] = own or Measured(told[measure], told["gradient"][measure])
+            own = None if measure in message else _own(measure, designs, branch)
+            result[measure] = own or Measured(message[measure], message["gradient"][measure])
         elif isinstance(measure, OwnMeasure):
-            found[measure] = Measured(*measure(designs))
+            result[measure] = Measured(*measure(designs))
         elif measure[0] == "at":
-            found[measure] = Measured(*at_angle(measure[1], measure[2], designs, branch))
+            result[measure] = Measured(*at_angle(measure[1], measure[2], designs, branch))
         elif measure[0] in AVERAGES:
-            found[measure] = Measured(*average(measure[0], measure[1], designs, branch))
+            result[measure] = Measured(*average(measure[0], measure[1], designs, branch))
         else:
             kind, name = measure
             top = peak(name, kind=kind, branch=branch, **designs)
             slopes = {p: np.asarray(slope) for p, slope in top["gradient"].items()}
-            found[measure] = Measured(np.asarray(top["value"]), slopes)
-    return found
+            result[measure] = Measured(np.asarray(top["value"]), slopes)
+    return result
 
 
 def _own(name: str, designs: Mapping[str, Any], branch: int) -> Measured:
     """A quantity of a user's own."""
     speed = {"omega0": designs["omega0"]} if designs.get("omega0") is not None else {}
     slopes = {p: sensitivity(name, p) for p in LENGTHS}
-    given = {n: designs[n] for n in LENGTHS}
-    found = evaluate([name, *slopes.values()], branch=branch, **given, **speed)
-    return Measured(np.asarray(found[name]), {p: np.asarray(found[slope]) for p, slope in slopes.items()})
+    inputs = {n: designs[n] for n in LENGTHS}
+    result = evaluate([name, *slopes.values()], branch=branch, **inputs, **speed)
+    return Measured(np.asarray(result[name]), {p: np.asarray(result[slope]) for p, slope in slopes.items()})
 
 
 def _margin(ec: Array, AB: Array, BC: Array) -> Measured:
@@ -201,10 +201,10 @@ def _margin(ec: Array, AB: Array, BC: Array) -> Measured:
     return Measured(value, {"ec": -np.sign(ec) * one, "AB": -one, "BC": one})
 
 
-def _events(wanted: list[Measure], designs: Mapping[str, Any], branch: int) -> dict[str, Any]:
-    names = [name for name in wanted if name in WHOLE or name in VELOCITIES]
+def _events(requested: list[Measure], designs: Mapping[str, Any], branch: int) -> dict[str, Any]:
+    names = [name for name in requested if name in WHOLE or name in VELOCITIES]
     if not names:
         return {}
     speed = designs.get("omega0")
-    given = {**{n: designs[n] for n in LENGTHS}, "omega0": 1.0 if speed is None else speed}
-    return events_of_arrays(given, branch, speed is not None, any(n in VELOCITIES for n in names))
+    inputs = {**{n: designs[n] for n in LENGTHS}, "omega0": 1.0 if speed is None else speed}
+    return events_of_arrays(inputs, branch, speed is not None, any(n in VELOCITIES for n in names))

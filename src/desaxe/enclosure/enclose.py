@@ -100,14 +100,14 @@ def enclose(
         raise ValueError(f"rtol = {rtol}: expected a number above 0")
     whole_number("boxes", boxes, 1, 10**7)
     deadline = Deadline("enclose", timeout)
-    given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
-    check_common(given, branch)
+    inputs = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
+    check_common(inputs, branch)
     without_loads("enclose", loads, "the range of its values, {name} = (low, high) as dx.between(low, high)")
-    given.update(loads)
-    function = _function(name, given, branch)
+    inputs.update(loads)
+    function = _function(name, inputs, branch)
     with ctx.workprec(BITS):
-        found = _range(function, rtol, boxes, deadline)
-    return Answer(found, dict.fromkeys(("lower", "upper", "inner"), unit_of(name)), EnclosureStatus)
+        result = _range(function, rtol, boxes, deadline)
+    return Answer(result, dict.fromkeys(("lower", "upper", "inner"), unit_of(name)), EnclosureStatus)
 
 
 # ---- the quantity over boxes ----------------------------------------------------------------------
@@ -134,11 +134,11 @@ class BoxedQuantity(NamedTuple):
         """The value at a point in sufficient precision; None if it may be undefined there."""
         inputs = self._inputs(tuple((x, x) for x in point))
         for bits in MORE_BITS:
-            found = enclosures(self.value, inputs, bits)
-            (value,) = found.values
+            result = enclosures(self.value, inputs, bits)
+            (value,) = result.values
             if value is not None and value.rel_accuracy_bits() >= ENOUGH:
                 break
-        return None if value is None or found.flags & PARTLY or not value.is_finite() else value
+        return None if value is None or result.flags & PARTLY or not value.is_finite() else value
 
     def _inputs(self, box: Box) -> dict[str, Interval]:
         return {**self.fixed, **dict(zip(self.varying, box, strict=True))}
@@ -174,11 +174,11 @@ def _turned(theta: Interval) -> Interval:
     return WHOLE_TURN if theta[1] - theta[0] > WHOLE_TURN[1] else theta
 
 
-def _program(wanted: Request) -> Program:
-    return specialise(wanted.names, wanted.form, wanted.fixed)
+def _program(requested: Request) -> Program:
+    return specialise(requested.names, requested.form, requested.fixed)
 
 
-def _interval(name: str, value: Any, wanted: str) -> Interval:
+def _interval(name: str, value: Any, requested: str) -> Interval:
     """The interval of an input: a number, pair or range as two doubles."""
     if isinstance(value, PlusMinus):
         value = Between(*ends_of(name, value))
@@ -188,7 +188,7 @@ def _interval(name: str, value: Any, wanted: str) -> Interval:
     if isinstance(value, str) and PLUS_MINUS.search(value):
         raise ValueError(f"{name} = {value!r}: {ENDS}")
     ends = value if isinstance(value, Between) else (value, value)
-    low, high = (as_number(name, end, (name,), (wanted,)) for end in ends)
+    low, high = (as_number(name, end, (name,), (requested,)) for end in ends)
     if low is None or high is None:
         raise ValueError(f"{name} = {shown(value)}: {ENDS}")
     if low > high:
@@ -235,8 +235,8 @@ def _status(function: BoxedQuantity, limit: int, deadline: Deadline) -> tuple[in
 
 def _defined(function: BoxedQuantity, box: Box) -> bool | None:
     """True if the quantity is defined in all of a box, False if nowhere, None if undecided."""
-    found = function.defined(box)
-    return False if found.values == (None,) else None if found.flags & PARTLY else True
+    result = function.defined(box)
+    return False if result.values == (None,) else None if result.flags & PARTLY else True
 
 
 class BoundedBox(NamedTuple):
@@ -301,11 +301,11 @@ class Bisection:
         while True:
             self.deadline.check()
             self.count += 1
-            found = self.function.over(box)
-            value, *slopes = found.values
+            result = self.function.over(box)
+            value, *slopes = result.values
             if value is None:
                 return None
-            smooth = not found.flags and all(slope is not None and slope.is_finite() for slope in slopes)
+            smooth = not result.flags and all(slope is not None and slope.is_finite() for slope in slopes)
             if not smooth or all(low == high for low, high in box):
                 upper = min(_up(sign * value), self._at_centre(sign, box)[1])
                 return BoundedBox(upper, box, _sizes(self.function, box))

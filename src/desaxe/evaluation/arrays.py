@@ -37,9 +37,9 @@ class Loops(NamedTuple):
     columns: dict[str, Array]
     axis_of: dict[str, int]
 
-    def taken_by(self, wanted: Request) -> "Loops":
+    def taken_by(self, requested: Request) -> "Loops":
         """The loops with the columns that a request takes; a force may vary where nothing else does."""
-        columns = {name: column for name, column in self.columns.items() if name in wanted.inputs}
+        columns = {name: column for name, column in self.columns.items() if name in requested.inputs}
         return (
             self
             if len(columns) == len(self.columns)
@@ -48,7 +48,7 @@ class Loops(NamedTuple):
 
 
 def evaluate_arrays(
-    wanted: Request,
+    requested: Request,
     inputs: Sequence[str],
     given: Mapping[str, Any],
     threads: int | None,
@@ -61,7 +61,7 @@ def evaluate_arrays(
     inputs   those that are numbers or arrays of the caller; others follow from `loads`
     keys     the kernels of the request that are remembered
     """
-    names = wanted.shown
+    names = requested.shown
     scalars: dict[str, Any] = {}
     arrays: dict[str, Array] = {}
     labelled = False
@@ -89,8 +89,8 @@ def evaluate_arrays(
                 else:
                     scalars[name] = float(made)
         loops = loops_over(arrays, shape)
-        loops = loops if loads is None else loops.taken_by(wanted)
-        fill(wanted, scalars, loops, list(buffers.values()), threads, keys=keys)
+        loops = loops if loads is None else loops.taken_by(requested)
+        fill(requested, scalars, loops, list(buffers.values()), threads, keys=keys)
     if out is None:
         return places if shape else {name: place[()] for name, place in places.items()}
     return copied_back(places, buffers)
@@ -105,13 +105,15 @@ def _functions(loads: "LoadInputs", given: Mapping[str, Any]) -> dict[str, Any]:
     return loads.at(numbers, evaluate_arrays(motion, motion.inputs, numbers, 1, None))
 
 
-def refuse_other_labels(given: Mapping[str, Any]) -> None:
+def refuse_other_labels(inputs: Mapping[str, Any]) -> None:
     """ValueError for labelled arrays of different dimensions or rows, where arrays broadcast by position."""
-    labels = {name: value.dims for name, value in given.items() if hasattr(value, "dims") and value.dims}
+    labels = {name: value.dims for name, value in inputs.items() if hasattr(value, "dims") and value.dims}
     if len(set(labels.values())) > 1:
-        told = ", ".join(f"{name} {dims}" for name, dims in labels.items())
-        raise ValueError(f"labelled arrays of different dimensions: {told}; use grid, or pass their .values")
-    rows = [(name, value.index) for name, value in given.items() if hasattr(value, "iloc")]
+        message = ", ".join(f"{name} {dims}" for name, dims in labels.items())
+        raise ValueError(
+            f"labelled arrays of different dimensions: {message}; use grid, or pass their .values"
+        )
+    rows = [(name, value.index) for name, value in inputs.items() if hasattr(value, "iloc")]
     for name, index in rows[1:]:
         first, expected = rows[0]
         if len(index) == len(expected) and not index.equals(expected):
@@ -171,12 +173,14 @@ def outputs_for(names: Sequence[str], shape: tuple[int, ...], out: Any) -> dict[
         raise ValueError(f"out = {shown(out)}: no name is given, so there is nothing to fill")
     places = dict(out) if isinstance(out, Mapping) else {names[0]: out}
     if set(places) != set(names):
-        wanted = "a dict with the keys " + ", ".join(names) if len(names) > 1 else f"an array for {names[0]}"
-        raise ValueError(f"out= is {wanted}, got {', '.join(places)}")
+        requested = (
+            "a dict with the keys " + ", ".join(names) if len(names) > 1 else f"an array for {names[0]}"
+        )
+        raise ValueError(f"out= is {requested}, got {', '.join(places)}")
     for name, place in places.items():
         if not isinstance(place, np.ndarray) or place.shape != shape:
-            got = getattr(place, "shape", type(place).__name__)
-            raise ValueError(f"out= for {name}: expected an array of shape {shape}, got {got}")
+            result = getattr(place, "shape", type(place).__name__)
+            raise ValueError(f"out= for {name}: expected an array of shape {shape}, got {result}")
         if not np.can_cast(dtype_of(name), place.dtype, "same_kind"):
             raise TypeError(f"out= for {name}: {place.dtype} cannot hold {dtype_of(name)}")
         if not place.flags.writeable:
@@ -212,7 +216,7 @@ def copied_back(places: dict[str, Array], buffers: Mapping[str, Array]) -> dict[
 
 
 def fill(
-    wanted: Request,
+    requested: Request,
     scalars: Mapping[str, Any],
     loops: Loops,
     outs: Sequence[Array],
@@ -228,7 +232,7 @@ def fill(
     sizes, columns, axis_of = loops
     outs = [out.reshape(sizes) for out in outs]
     if key is None:
-        key = key_of(wanted, scalars, columns, axis_of, len(sizes), keys)
+        key = key_of(requested, scalars, columns, axis_of, len(sizes), keys)
     if columns:
         run_in_blocks(key, {**scalars, **columns}, outs, threads)
         return

@@ -32,10 +32,10 @@ def chunk_lengths(chunks: Any, sizes: Mapping[str, int], points: int) -> dict[st
                     f"{' (it is a number, or reduced)' if name in INPUTS else ''}; "
                     f"{did_you_mean(str(name), list(sizes))}dimensions: {known}"
                 )
-        wanted = {name: chunks.get(name, -1) for name in sizes}
+        requested = {name: chunks.get(name, -1) for name in sizes}
     else:
-        wanted = dict.fromkeys(sizes, chunks)
-    known_lengths = {n: _lengths(n, w, sizes[n]) for n, w in wanted.items() if not _is_auto(w)}
+        requested = dict.fromkeys(sizes, chunks)
+    known_lengths = {n: _lengths(n, w, sizes[n]) for n, w in requested.items() if not _is_auto(w)}
     room = max(1, points // prod(max(own, default=1) or 1 for own in known_lengths.values()))
     for name in reversed([name for name in sizes if name not in known_lengths]):
         length = min(max(sizes[name], 1), room)
@@ -73,27 +73,27 @@ def slices_of(place: Sequence[int], sizes: Mapping[str, int], chunk: Mapping[str
     }
 
 
-def _is_auto(wanted: Any) -> bool:
-    return isinstance(wanted, str) and wanted == "auto"
+def _is_auto(requested: Any) -> bool:
+    return isinstance(requested, str) and requested == "auto"
 
 
-def _lengths(name: str, wanted: Any, size: int) -> tuple[int, ...]:
-    if isinstance(wanted, (tuple, list)):
-        own = tuple(_length(name, part, size) for part in wanted)
+def _lengths(name: str, requested: Any, size: int) -> tuple[int, ...]:
+    if isinstance(requested, (tuple, list)):
+        own = tuple(_length(name, part, size) for part in requested)
         if sum(own) != size:
             raise ValueError(f"chunks of {name}: {_shown(own)} is {sum(own)} points, it has {size}")
         return own
-    return _cut(size, _length(name, wanted, size))
+    return _cut(size, _length(name, requested, size))
 
 
-def _length(name: str, wanted: Any, size: int) -> int:
-    if wanted is None or wanted == -1:
+def _length(name: str, requested: Any, size: int) -> int:
+    if requested is None or requested == -1:
         return max(size, 1)
-    if isinstance(wanted, bool) or not hasattr(wanted, "__index__") or np.ndim(wanted):
-        raise TypeError(f'chunks of {name} = {wanted!r}: a whole number, "auto" or -1 for the whole')
-    if int(wanted) < 1:
-        raise ValueError(f'chunks of {name} = {wanted}: at least 1, "auto" or -1 for the whole')
-    return min(int(wanted), max(size, 1))
+    if isinstance(requested, bool) or not hasattr(requested, "__index__") or np.ndim(requested):
+        raise TypeError(f'chunks of {name} = {requested!r}: a whole number, "auto" or -1 for the whole')
+    if int(requested) < 1:
+        raise ValueError(f'chunks of {name} = {requested}: at least 1, "auto" or -1 for the whole')
+    return min(int(requested), max(size, 1))
 
 
 def _cut(size: int, length: int) -> tuple[int, ...]:

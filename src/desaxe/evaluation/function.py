@@ -101,17 +101,17 @@ class Function:
         given: dict[str, Any] = {n: v for n, v in self.fixed.items() if n in INPUTS and v is not None}
         given.setdefault("alpha", None if "alpha" in self.inputs else 0.0)
         given |= dict.fromkeys(self.inputs, np.empty(1))
-        wanted = request(self.names, given, branch, accuracy, self._known)
+        requested = request(self.names, given, branch, accuracy, self._known)
         numbers = {}
-        for name in wanted.inputs:
+        for name in requested.inputs:
             if name not in self.inputs:
-                number = as_number(name, given.get(name), wanted.inputs, self.names)
+                number = as_number(name, given.get(name), requested.inputs, self.names)
                 if number is None:
                     message = "is fixed, so it is a number; an array belongs to inputs="
                     raise TypeError(f"function: {name} {message}")
                 numbers[name] = number
-        axis_of = {name: 0 for name in self.inputs if name in wanted.inputs}
-        key = key_of(wanted, numbers, {}, axis_of, 1)
+        axis_of = {name: 0 for name in self.inputs if name in requested.inputs}
+        key = key_of(requested, numbers, {}, axis_of, 1)
         return bind(key, numbers, self.inputs, repair_for(key, numbers, self.inputs, self._failures))
 
     def __call__(self, *args: Any, out: Any = None, **named: Any) -> Any:
@@ -127,16 +127,16 @@ class Function:
             named["out"] = outs = self._outputs(out)
             args = tuple([_apart(argument, outs) for argument in args])
         try:
-            found = self._ufunc(*args, **named)
+            result = self._ufunc(*args, **named)
         except (TypeError, ValueError):
             args = tuple(map(_array, self.inputs, args))
-            found = self._ufunc(*args, **named)
+            result = self._ufunc(*args, **named)
         if self._failures:
             raise self._failures.pop()
         if labelled:
-            for name, array in zip(self.names, (found,) if len(self.names) == 1 else found, strict=True):
+            for name, array in zip(self.names, (result,) if len(self.names) == 1 else result, strict=True):
                 array.attrs = {"units": self.units[name]} if hasattr(array, "dims") else {}
-        return found if self._one or len(self.names) > 1 else (found,)
+        return result if self._one or len(self.names) > 1 else (result,)
 
     def _in_order(
         self, args: tuple[Any, ...], named: dict[str, Any]
@@ -162,13 +162,13 @@ class Function:
                     f"out= is a dict with the keys {', '.join(self.names)}, got {', '.join(out)}"
                 )
             return tuple(out[name] for name in self.names)
-        found = tuple(out) if isinstance(out, (tuple, list)) else (out,)
-        for name, place in zip(self.names, found, strict=False):
+        result = tuple(out) if isinstance(out, (tuple, list)) else (out,)
+        for name, place in zip(self.names, result, strict=False):
             if not hasattr(place, "__array_ufunc__"):
                 raise TypeError(f"out= for {name}: an array is wanted, got {as_shown(place)}")
-        if len(found) != len(self.names):
-            raise ValueError(f"out=: expected {len(self.names)} arrays, got {len(found)}")
-        return found
+        if len(result) != len(self.names):
+            raise ValueError(f"out=: expected {len(self.names)} arrays, got {len(result)}")
+        return result
 
     def jacobian(self, *args: Any, **named: Any) -> dict[str, dict[str, Any]]:
         """The exact derivatives by the inputs: dict name -> dict input -> array of the broadcast shape.
@@ -183,8 +183,8 @@ class Function:
             if name == "margin":
                 factor = -np.sign(given["ec"]) if parameter == "ec" else MARGIN.get(parameter, 0.0)
                 return _constant_like(known[name], factor)
-            found = known.get(sensitivity(name, parameter))
-            return _constant_like(known[name], 0.0) if found is None else found
+            result = known.get(sensitivity(name, parameter))
+            return _constant_like(known[name], 0.0) if result is None else result
 
         return {name: {parameter: slope(name, parameter) for parameter in self.inputs} for name in self.names}
 
@@ -192,16 +192,16 @@ class Function:
     def _slopes(self) -> "Function":
         """The function of the values and of their derivatives, those that are not 0 everywhere."""
         state = self._state
-        wanted = dict.fromkeys(self.names)
+        requested = dict.fromkeys(self.names)
         for name in self.names:
             needed = inputs_of(name, state, self._known)
             for parameter in self.inputs:
                 slope = sensitivity(name, parameter)
                 if has(slope, state, self._known):
-                    wanted[slope] = None
+                    requested[slope] = None
                 elif parameter in needed and name != "margin":
                     raise ValueError(f"jacobian: the derivative of {name} by {parameter} is not derived")
-        return Function(tuple(wanted), False, self.inputs, self.fixed, self._known)
+        return Function(tuple(requested), False, self.inputs, self.fixed, self._known)
 
     @computed_once
     def _point(self) -> Any:

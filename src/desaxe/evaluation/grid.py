@@ -93,8 +93,8 @@ def grid(
     """
     if sliders is not None:
         check_sliders(sliders)
-        found: xr.Dataset = sliders.grid(names, inputs, accuracy, out=out, reduce=reduce, chunks=chunks)
-        return found
+        result: xr.Dataset = sliders.grid(names, inputs, accuracy, out=out, reduce=reduce, chunks=chunks)
+        return result
     if _vary_together(inputs):
         plain = "is for plain arrays, not for inputs that vary together along a dimension: pass their values"
         _refuse(plain, reduce=reduce, chunks=chunks, out=out)
@@ -161,8 +161,8 @@ def _grid_by_labels(
     result |= values(["status"], given, branch, accuracy, threads)
     result |= values(["margin"], lengths, branch, accuracy, threads)
     about = provenance(names, {name: array.values for name, array in arrays.items()}, branch, accuracy)
-    told = {name: array.assign_attrs(input_attributes(name)) for name, array in arrays.items()}
-    dataset = import_xarray().Dataset(result, attrs=about).assign_coords(told)
+    message = {name: array.assign_attrs(input_attributes(name)) for name, array in arrays.items()}
+    dataset = import_xarray().Dataset(result, attrs=about).assign_coords(message)
     return with_loads(dataset, loads)
 
 

@@ -39,11 +39,11 @@ class Shown(NamedTuple):
         if isinstance(value, Message):
             return value.in_units(self.system)
         if getattr(getattr(value, "dtype", None), "hasobject", False):  # designs, each with its own entry
-            found = value.copy()
-            flat = found.reshape(-1)
+            result = value.copy()
+            flat = result.reshape(-1)
             for k, part in enumerate(flat):
                 flat[k] = self.entry(part, unit)
-            return found
+            return result
         if unit is None or value is None or isinstance(value, (str, bool)):
             return value
         if hasattr(value, "dims"):
@@ -74,7 +74,7 @@ class Shown(NamedTuple):
 def in_units(
     found: Any,
     units: UnitSystem,
-    given: Mapping[str, Any] | None = None,
+    inputs: Mapping[str, Any] | None = None,
     as_quantity: bool = False,
 ) -> Any:
     """A result in SI units in others: an Answer by the units that it knows, a Dataset, its attributes too.
@@ -83,7 +83,7 @@ def in_units(
     as_quantity  numbers as pint quantities instead (extra `units`)
     """
     if not isinstance(found, Answer):
-        return _dataset_in_units(found, units, given, as_quantity)
+        return _dataset_in_units(found, units, inputs, as_quantity)
     shown = Shown(units, as_quantity)
     result = copy.copy(found)
     for key, value in found.items():
@@ -96,7 +96,7 @@ def in_units(
 def _dataset_in_units(
     dataset: "xr.Dataset",
     units: UnitSystem,
-    given: Mapping[str, Any] | None,
+    inputs: Mapping[str, Any] | None,
     as_quantity: bool,
 ) -> "xr.Dataset":
     """A Dataset in other units, its attributes too; see `in_units`."""
@@ -114,8 +114,8 @@ def _dataset_in_units(
         conversion = known or units.of_unit(unit)
         lazy = array.chunks is not None  # a sweep's, which may be larger than memory
         values = array.data / float(conversion.si) if lazy else conversion.shown(array.values)
-        if given is not None and key in given:
-            values = np.asarray(given[key], dtype=np.float64)
+        if inputs is not None and key in inputs:
+            values = np.asarray(inputs[key], dtype=np.float64)
         attributes = {**array.attrs, "units": conversion.unit}
         if as_quantity and key in dataset.data_vars and conversion.unit != "1":
             values = registry().Quantity(values if lazy else np.asarray(values), conversion.unit)
@@ -131,7 +131,7 @@ def _dataset_in_units(
             [said(str(name), one[name], one[name].attrs.get("units", "1")) for name in fixed]
             for one in (dataset, result)
         )
-        told = dict(zip(old, new, strict=True))
+        message = dict(zip(old, new, strict=True))
         what, mark, numbers = str(dataset.attrs["scene"]).partition("; ")
-        result.attrs["scene"] = what + mark + ", ".join(told.get(one, one) for one in numbers.split(", "))
+        result.attrs["scene"] = what + mark + ", ".join(message.get(one, one) for one in numbers.split(", "))
     return result

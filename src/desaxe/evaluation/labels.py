@@ -44,10 +44,10 @@ def attributes(name: str, state: bool = False) -> dict[str, Any]:
 @lru_cache(maxsize=256)
 def _attributes(name: str, state: bool, known: Register) -> dict[str, str]:
     row = quantity(name, state, known)
-    found = {"units": row.unit, "long_name": row.meaning}
+    result = {"units": row.unit, "long_name": row.meaning}
     if row.source:
-        found["references"] = row.source
-    return found
+        result["references"] = row.source
+    return result
 
 
 def side_attributes() -> dict[str, Any]:
@@ -130,9 +130,9 @@ def labelled(
     """
     xarray = import_xarray()
     variables = dict(values)
-    for name, (_, _, told) in variables.items():
+    for name, (_, _, message) in variables.items():
         if "status" in variables and name not in ("status", "margin"):
-            told["ancillary_variables"] = "status"
+            message["ancillary_variables"] = "status"
     coordinates = {
         name: ((name,) if array.ndim else (), array, input_attributes(name)) for name, array in inputs.items()
     }
@@ -181,8 +181,8 @@ class KnownLoads(dict[str, Any]):
 
 def known_loads(dataset: "xr.Dataset") -> Mapping[str, Any]:
     """The loads that vary with the motion, if the Dataset still knows them."""
-    found: Mapping[str, Any] = dataset.encoding.get(KNOWN, {})
-    return found
+    result: Mapping[str, Any] = dataset.encoding.get(KNOWN, {})
+    return result
 
 
 def loads_text(loads: Mapping[str, Any], units: UnitSystem = SI) -> str:

@@ -153,7 +153,7 @@ class Plan(NamedTuple):
         outer, reduced = self.outer, self.reductions is not None
         kept = {n: array for n, array in outer.axes.items() if not array.ndim or n in self.dims}
         own, beside = (
-            {n: (s.dims, arrays[n], told.attributes) for s in some for n, told in s.outputs.items()}
+            {n: (s.dims, arrays[n], message.attributes) for s in some for n, message in s.outputs.items()}
             for some in (self.steps, self.beside)
         )
         shown = own if reduced else {name: own[name] for name in outer.shown if name in own}
@@ -194,7 +194,7 @@ def lazy_values(plan: Plan, chunks: Any, threads: int | None) -> dict[str, Any]:
         from dask.base import tokenize
 
     lengths = chunk_lengths(chunks, plan.sizes, max(1, AUTO // max(plan.behind, 1)))
-    axes, found = plan.outer.axes, dict[str, Any]()
+    axes, result = plan.outer.axes, dict[str, Any]()
     for step in plan.all:
         token = tokenize(step.identity, *(axes[name] for name in step.axes), lengths)
         columns = []
@@ -212,11 +212,11 @@ def lazy_values(plan: Plan, chunks: Any, threads: int | None) -> dict[str, Any]:
                 name=f"desaxe-{token}", meta=empty,
             )  # fmt: skip
         for name, output in step.outputs.items():
-            found[name] = da.blockwise(
+            result[name] = da.blockwise(
                 _output, along, blocks, along, name, None, dtype=output.dtype, name=f"{name}-{token}",
                 meta=empty.astype(output.dtype),
             )  # fmt: skip
-    return found
+    return result
 
 
 class ChunkTask(NamedTuple):

@@ -211,9 +211,9 @@ class Points(Step):
     def at(self, points: Mapping[str, Array]) -> dict[str, Array]:
         """The values under loads at points, whose inputs are columns of one length."""
         assert self.loads is not None
-        given = {**dict(self.numbers), **points, **self.loads.loads}
+        inputs = {**dict(self.numbers), **points, **self.loads.loads}
         with using(self.own):
-            result: dict[str, Array] = values(self.names, given, self.branch, self.wanted.accuracy, 1)
+            result: dict[str, Array] = values(self.names, inputs, self.branch, self.wanted.accuracy, 1)
         return result
 
     def _fill(self, values: Mapping[str, Array], outs: Sequence[Array], threads: int | None) -> None:
@@ -249,10 +249,10 @@ class Points(Step):
 def points_of(names: Sequence[str], outer: Outer, along: Sequence[str], branch: int, accuracy: Any) -> Points:
     """The step of names over dimensions of a grid, checked; TypeError for what is missing."""
     call = checked_request(tuple(names), outer.given, branch, accuracy, outer.loads)
-    wanted, inputs, loads = call.asked, call.inputs, call.of_loads(outer.loads)
+    requested, inputs, loads = call.asked, call.inputs, call.of_loads(outer.loads)
     for name in inputs:
         if name not in outer.axes:
-            as_number(name, None, inputs, wanted.shown)
+            as_number(name, None, inputs, requested.shown)
     own = {name: outer.axes[name] for name in inputs}
     scalars = {n: float(axis.reshape(-1)[0]) for n, axis in own.items() if n not in along and axis.size}
     columns = {n: np.ascontiguousarray(axis) for n, axis in own.items() if n in along}
@@ -260,6 +260,8 @@ def points_of(names: Sequence[str], outer: Outer, along: Sequence[str], branch: 
     if loads is not None and "theta" in columns:  # the values of functions are along it
         columns |= dict.fromkeys(loads.functions, columns["theta"])
         axis_of |= dict.fromkeys(loads.functions, axis_of["theta"])
-    loops = Loops(tuple(outer.axes[name].size for name in along) or (1,), columns, axis_of).taken_by(wanted)
-    key = key_of(wanted, scalars, loops.columns, loops.axis_of, len(loops.sizes), call.keys)
-    return Points(tuple(along), wanted, tuple(inputs), tuple(scalars.items()), key, int(branch), loads)
+    loops = Loops(tuple(outer.axes[name].size for name in along) or (1,), columns, axis_of).taken_by(
+        requested
+    )
+    key = key_of(requested, scalars, loops.columns, loops.axis_of, len(loops.sizes), call.keys)
+    return Points(tuple(along), requested, tuple(inputs), tuple(scalars.items()), key, int(branch), loads)

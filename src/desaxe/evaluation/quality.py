@@ -55,19 +55,19 @@ class Quality(NamedTuple):
 
 def evaluate_quality(
     names: str | Sequence[str],
-    given: Mapping[str, Any],
+    inputs: Mapping[str, Any],
     branch: int,
     accuracy: Any,
     threads: int | None,
     out: Any,
 ) -> Any:
     """The qualities of one name, or a dict of them."""
-    check_common(given, branch, threads)
+    check_common(inputs, branch, threads)
     if out is not None:
         raise TypeError("out= is for plain values, not with quality=True")
     if accuracy_of(accuracy) != "standard":
         raise ValueError(f"accuracy = {accuracy!r}: quality=True knows the errors of 'standard' alone")
-    varying = {name: load for name, load in given.items() if callable(load)}
+    varying = {name: load for name, load in inputs.items() if callable(load)}
     for name, load in varying.items():
         if not isinstance(load, (TableOverTheta, OverY)):
             raise TypeError(
@@ -76,8 +76,8 @@ def evaluate_quality(
             )
     of = _under_loads if varying else _quality
     if isinstance(names, str):
-        return of(names, given, branch, threads)
-    return {name: of(name, given, branch, threads) for name in several(names)}
+        return of(names, inputs, branch, threads)
+    return {name: of(name, inputs, branch, threads) for name in several(names)}
 
 
 def _quality(name: str, given: Mapping[str, Any], branch: int, threads: int | None) -> Quality:
@@ -85,19 +85,19 @@ def _quality(name: str, given: Mapping[str, Any], branch: int, threads: int | No
     refuse_other_labels({p: given.get(p) for p in needs})
     slopes = _slope_names(name, needs, given.get("omega") is not None)
     gap = ["margin"] if name != "margin" and set(LENGTHS) <= set(needs) else []
-    found = values([name, *slopes.values(), *gap], dict(given), branch, threads=threads)
+    result = values([name, *slopes.values(), *gap], dict(given), branch, threads=threads)
     arrays = {p: as_array(p, given.get(p), needs, (name,)) for p in needs}
-    by = {p: np.asarray(found[slope]) for p, slope in slopes.items()}
+    by = {p: np.asarray(result[slope]) for p, slope in slopes.items()}
     if name == "margin":
         by = {"ec": -np.copysign(1.0, arrays["ec"]), "AB": np.array(-1.0), "BC": np.array(1.0)}
-    f, shape = np.asarray(found[name]), broadcast_shape(arrays)
+    f, shape = np.asarray(result[name]), broadcast_shape(arrays)
     with np.errstate(all="ignore"):
         steps = {p: _step(arrays[p], slope) for p, slope in by.items()}
         conditions = {p: _condition(f, step, shape) for p, step in steps.items()}
         if gap:
-            steps |= _steps_with_margin(arrays, by, np.asarray(found["margin"]))
+            steps |= _steps_with_margin(arrays, by, np.asarray(result["margin"]))
         bound = np.abs(f) * ROUNDED_ONCE if name == "margin" else _bound(f, steps)
-    return Quality(found[name], conditions, _shaped(bound, shape), _digits(f, bound, shape))
+    return Quality(result[name], conditions, _shaped(bound, shape), _digits(f, bound, shape))
 
 
 def _slope_names(name: str, needs: Sequence[str], state: bool) -> dict[str, str]:
@@ -106,16 +106,16 @@ def _slope_names(name: str, needs: Sequence[str], state: bool) -> dict[str, str]
         return {}
     if name == "status":
         raise ValueError("quality of status: it is not a real number")
-    found = {p: sensitivity(name, p) for p in needs}
+    result = {p: sensitivity(name, p) for p in needs}
     try:
-        for slope in found.values():
+        for slope in result.values():
             quantity(slope, state)
     except ValueError:
         base = parts(name)[0]
         raise ValueError(
             f"quality of {name}: not available, as its own derivatives are not derived; that of {base} is"
         ) from None
-    return found
+    return result
 
 
 def _digits(f: Any, bound: Any, shape: tuple[int, ...]) -> Any:
@@ -165,7 +165,7 @@ def _shaped(array: Array, shape: tuple[int, ...]) -> Any:
 # ---- under loads ------------------------------------------------------------------------------------
 
 
-def _under_loads(name: str, given: Mapping[str, Any], branch: int, threads: int | None) -> Quality:
+def _under_loads(name: str, inputs: Mapping[str, Any], branch: int, threads: int | None) -> Quality:
     """The quality of a name under loads that are tables.
 
     Conditions are those of the whole: they count that an input moves the place at which a load is looked up;
@@ -173,30 +173,30 @@ def _under_loads(name: str, given: Mapping[str, Any], branch: int, threads: int 
     and what the force itself may be wrong by: what it changes within the error of its place, and the rounding
     of a cubic.
     """
-    numbers, plan = plan_for((name,), given)
+    numbers, plan = plan_for((name,), inputs)
     forces = {n: _force_and_error(load, numbers, branch, threads) for n, load in plan.loads.items()}
     held = {**dict.fromkeys(MOTION), **numbers, **{n: force for n, (force, _) in forces.items()}}
-    found = _quality(name, held, branch, threads)
+    result = _quality(name, held, branch, threads)
     if not plan.loads:
-        return found
+        return result
     by_force = {n: sensitivity(name, n) for n in plan.loads}
-    moving = {p for load in plan.loads.values() for p in load.parameters} & found.conditions.keys()
+    moving = {p for load in plan.loads.values() for p in load.parameters} & result.conditions.keys()
     totals = {p: sensitivity(name, p) for p in moving}
     try:
-        slopes = values([*totals.values()], given, branch, threads=threads)
+        slopes = values([*totals.values()], inputs, branch, threads=threads)
     except ValueError as error:
         raise ValueError(f"quality of {name}: not available under a load; " + message_of(error)) from None
     partial = values([*by_force.values()], held, branch, threads=threads)
-    bound = np.asarray(found.error_bound)
+    bound = np.asarray(result.error_bound)
     for force, slope in by_force.items():
         bound = bound + np.abs(partial[slope]) * forces[force][1]
-    bound = bound.reshape(np.shape(found.value))
-    value = values(name, given, branch, threads=threads)
+    bound = bound.reshape(np.shape(result.value))
+    value = values(name, inputs, branch, threads=threads)
     shape = np.shape(value)
     with np.errstate(all="ignore"):
         steps = {p: _step(as_array(p, numbers[p], (p,), (name,)), slopes[of]) for p, of in totals.items()}
         moved = {p: _condition(value, step, shape) for p, step in steps.items()}
-    return Quality(value, {**found.conditions, **moved}, _shaped(bound, shape), _digits(value, bound, shape))
+    return Quality(value, {**result.conditions, **moved}, _shaped(bound, shape), _digits(value, bound, shape))
 
 
 def _force_and_error(
@@ -209,10 +209,10 @@ def _force_and_error(
         here, *beside = (load.both(at)[0] for at in (theta, theta - room, theta + room))
         return here[()], _largest(here, beside) + ROUNDINGS * ROUNDED_ONCE * _size(load.table)
     assert isinstance(load, OverY)
-    given = {**dict.fromkeys(MOTION), **{n: numbers[n] for n in LENGTHS}, "theta": theta}
+    inputs = {**dict.fromkeys(MOTION), **{n: numbers[n] for n in LENGTHS}, "theta": theta}
     names = ["Y", *([load.centre] if isinstance(load, OverStroke) else [])]
-    errors = [np.asarray(_quality(name, given, branch, threads).error_bound) for name in names]
-    motion = values(list(load.motion()), given, branch, threads=threads)
+    errors = [np.asarray(_quality(name, inputs, branch, threads).error_bound) for name in names]
+    motion = values(list(load.motion()), inputs, branch, threads=threads)
     speeds = {n: as_array(n, numbers[n], (n,), ("quality",)) for n in SPEEDS if n in numbers}
     x = np.asarray(load.along(motion))
     room = sum(errors) + 2.0 * ROUNDED_ONCE * np.abs(x)

@@ -25,7 +25,7 @@ MOST_KNOWN = 1024  # requests that are remembered
 
 def values(
     names: str | Sequence[str],
-    given: Mapping[str, Any],
+    inputs: Mapping[str, Any],
     branch: int = 1,
     accuracy: Any = "standard",
     threads: int | None = None,
@@ -36,14 +36,14 @@ def values(
     Where F_X or F_Y varies with the motion, derivatives are total ones.
     """
     requested = (names,) if isinstance(names, str) else several(names)
-    if threads is not None or given.get("omega") is not None or type(branch) is not int:
-        check_common(given, branch, threads)
-    if any(map(callable, given.values())):
-        numbers, loads = _split()({n: value for n, value in given.items() if value is not None})
+    if threads is not None or inputs.get("omega") is not None or type(branch) is not int:
+        check_common(inputs, branch, threads)
+    if any(map(callable, inputs.values())):
+        numbers, loads = _split()({n: value for n, value in inputs.items() if value is not None})
         call = checked_request(requested, numbers, branch, accuracy, loads)
         answer = call.answer(numbers, threads, out, loads)
     else:
-        answer = checked_request(requested, given, branch, accuracy).answer(given, threads, out)
+        answer = checked_request(requested, inputs, branch, accuracy).answer(inputs, threads, out)
     if type(answer) is tuple:
         return answer[0] if isinstance(names, str) else dict(zip(requested, answer, strict=True))
     return answer[names] if isinstance(names, str) else answer
@@ -51,7 +51,7 @@ def values(
 
 def checked_request(
     names: tuple[str, ...],
-    given: Mapping[str, Any],
+    inputs: Mapping[str, Any],
     branch: Any,
     accuracy: Any,
     loads: "Mapping[str, Load]" = NO_LOADS,
@@ -59,16 +59,16 @@ def checked_request(
     """The request of names, checked when it is new; the way of every call to a kernel begins here."""
     if type(accuracy) is not str or accuracy != "standard":
         accuracy = accuracy_of(accuracy)
-    present = tuple([name for name, value in given.items() if value is not None])
+    present = tuple([name for name, value in inputs.items() if value is not None])
     now = register()
-    key: tuple[Any, ...] = names, present, is_steady(given.get("alpha")), branch, accuracy, now
+    key: tuple[Any, ...] = names, present, is_steady(inputs.get("alpha")), branch, accuracy, now
     if loads:
         key += tuple([(name, load.variant) for name, load in loads.items()])
     call = _KNOWN.get(key)
     if call is None:
         if len(_KNOWN) > MOST_KNOWN:
             _KNOWN.clear()
-        call = _KNOWN[key] = CheckedRequest(names, given, loads, branch, accuracy, now)
+        call = _KNOWN[key] = CheckedRequest(names, inputs, loads, branch, accuracy, now)
     return call
 
 

@@ -38,19 +38,19 @@ def crossings(load: OverY, places: Sequence[float], lengths: Sequence[Array], br
 def meeting_and_bent(load: OverY, lengths: Sequence[Array], branch: int) -> tuple[Array, Array]:
     """The crank angles [rad] in a turn at which pieces of a load meet; those where it is not smooth."""
     every, bent = load.positions(smooth=True), load.positions(smooth=False)
-    found = crossings(load, every, lengths, branch)
+    result = crossings(load, every, lengths, branch)
     if bent == every:
-        return found, found
+        return result, result
     known = [place in bent for place in every if place > 0.0 or not load.centre]
-    return found, found[:, np.resize(known, found.shape[1])]
+    return result, result[:, np.resize(known, result.shape[1])]
 
 
 def zero_of(load: Load, lengths: Sequence[Array], branch: int) -> Array:
     """The position [m] of each design from which a load measures positions; NaN where there is none."""
     if not load.centre:
         return np.zeros_like(lengths[0])
-    (found,) = closed_form(DEAD_CENTRES, (load.centre,), branch=float(branch)).arrays(*lengths)
-    return np.broadcast_to(found, lengths[0].shape)
+    (result,) = closed_form(DEAD_CENTRES, (load.centre,), branch=float(branch)).arrays(*lengths)
+    return np.broadcast_to(result, lengths[0].shape)
 
 
 def shift(kept: Sequence[str], parameter: str, known: Mapping[str, Any]) -> Any:
@@ -109,13 +109,13 @@ def meeting_angles(
 
     One row for all designs where no load is over the slider's position.
     """
-    found = [np.empty((1, 0))]
+    result = [np.empty((1, 0))]
     for load in members_of(loads):
         if isinstance(load, OverTheta):
-            found.append(np.array([load.nodes(low, high, smooth=True)]))
+            result.append(np.array([load.nodes(low, high, smooth=True)]))
         elif isinstance(load, OverY):
             own = crossings(load, load.positions(smooth=True), lengths, branch)
             angles = np.concatenate([own, dead_centres(lengths)], axis=-1)
-            found.append(repeated(angles, low, high))
-    size = max(part.shape[0] for part in found)
-    return np.concatenate([np.broadcast_to(part, (size, part.shape[1])) for part in found], axis=1)
+            result.append(repeated(angles, low, high))
+    size = max(part.shape[0] for part in result)
+    return np.concatenate([np.broadcast_to(part, (size, part.shape[1])) for part in result], axis=1)

@@ -17,8 +17,8 @@ def arguments_of(name: str, function: Callable[..., Any], served: Sequence[str])
     needed = required(name, function)
     unknown = next((argument for argument in needed if argument not in ARGUMENTS), None)
     if unknown is not None or not needed:
-        told = getattr(function, "__name__", type(function).__name__)
-        what = f"{told} has {unknown}" if needed else f"{told} has none without a default"
+        message = getattr(function, "__name__", type(function).__name__)
+        what = f"{message} has {unknown}" if needed else f"{message} has none without a default"
         raise TypeError(
             f"{name}: a function is called by the names of its arguments, {', '.join(ARGUMENTS)}, but {what}"
         )
@@ -48,8 +48,10 @@ def of_one(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
     except TypeError:  # np.sin and others do not say
         return function
     if len(needed) > 1:
-        told = getattr(function, "__name__", type(function).__name__)
-        raise TypeError(f"{name}: a function of one argument is expected, but {told} has {', '.join(needed)}")
+        message = getattr(function, "__name__", type(function).__name__)
+        raise TypeError(
+            f"{name}: a function of one argument is expected, but {message} has {', '.join(needed)}"
+        )
     return by_position(function) if needed else function
 
 
@@ -66,9 +68,9 @@ def _parameters(name: str, function: Callable[..., Any]) -> Sequence[Parameter]:
     try:
         every: Mapping[str, Parameter] = signature(getattr(function, "pyfunc", function)).parameters
     except ValueError:
-        told = getattr(function, "__name__", type(function).__name__)
+        message = getattr(function, "__name__", type(function).__name__)
         raise TypeError(
-            f"{name}: {told} does not say what its arguments are; give a function of theta, such as "
-            f"lambda theta: {told}(theta)"
+            f"{name}: {message} does not say what its arguments are; give a function of theta, such as "
+            f"lambda theta: {message}(theta)"
         ) from None
     return list(every.values())

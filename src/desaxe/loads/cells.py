@@ -116,12 +116,12 @@ class Cells:
             else:
                 if np.isfinite(numbers).all():
                     return numbers
-        found = [self.number(cell) for cell in cells]
-        if None in found:
-            index = found.index(None)
+        result = [self.number(cell) for cell in cells]
+        if None in result:
+            index = result.index(None)
             problem = f"{shown(cells[index].strip())} is not a finite number; {_remedy(cells[index])}"
             self.refuse(first + index, column, name, problem)
-        return np.array(found, float)
+        return np.array(result, float)
 
     def _require_one_mark(self, joined: str, cells: list[str], first: int, column: int, name: str) -> None:
         """ValueError for numbers with a decimal point beside some with a decimal comma."""

@@ -51,8 +51,8 @@ def column_of(what: str, given: Any, units: tuple[str, ...], own: Conversion | N
         values = values if unit == said else conversion(what, str(said), unit).to_si(values)
         return Column(_finite(what, values.tolist()), unit)
     if hasattr(given, "magnitude"):
-        unit, found = _first_that_fits(what, given, units)
-        return Column(_finite(what, found.tolist()), unit)
+        unit, result = _first_that_fits(what, given, units)
+        return Column(_finite(what, result.tolist()), unit)
     if isinstance(given, UNORDERED) or not hasattr(given, "__iter__"):
         raise TypeError(f"{what} = {shown(given)}: expected a list or array of numbers")
     elements = given.tolist() if hasattr(given, "tolist") else list(given)
@@ -64,16 +64,16 @@ def column_of(what: str, given: Any, units: tuple[str, ...], own: Conversion | N
         )
     every = [_with_unit(what, value, units) for value in elements]
     numbers = _finite(what, [number for _, number in every])
-    told = next((unit for unit, _ in reversed(every) if unit is not None), None)
+    message = next((unit for unit, _ in reversed(every) if unit is not None), None)
     bare = [unit is None and number != 0.0 for (unit, _), number in zip(every, numbers, strict=True)]
     if own is None or not any(bare):  # 0 is 0 in any unit
-        return Column(numbers, told, any(bare))
-    if told not in (None, units[0]) and own.si != 1:
-        raise ValueError(f"{what}: plain numbers, which would be in {own.unit}, beside a text in {told}")
+        return Column(numbers, message, any(bare))
+    if message not in (None, units[0]) and own.si != 1:
+        raise ValueError(f"{what}: plain numbers, which would be in {own.unit}, beside a text in {message}")
     # As the text of the number would be: the decimal that is written, not the double nearest to it.
     scaled = by_digits(_array(numbers), own.si).tolist()
     values = [si if plain else n for n, si, plain in zip(numbers, scaled, bare, strict=True)]
-    return Column(values, told or (units[0] if own.si != 1 else None))
+    return Column(values, message or (units[0] if own.si != 1 else None))
 
 
 def _with_unit(what: str, value: Any, units: tuple[str, ...]) -> tuple[str | None, Any]:
@@ -102,7 +102,7 @@ def _first_that_fits(what: str, value: Any, units: tuple[str, ...]) -> tuple[str
 
 
 def _finite(what: str, values: list[Any]) -> list[float]:
-    found = []
+    result = []
     for value in values:
         try:
             number = plain_number(value) if isinstance(value, str) else float(value)
@@ -114,8 +114,8 @@ def _finite(what: str, values: list[Any]) -> list[float]:
             raise TypeError(f"{what}: {shown(value)} is not a number")
         if isinstance(value, bool) or not isfinite(number):
             raise ValueError(f"{what}: {shown(value)}; every one must be a finite number")
-        found.append(number)
-    return found
+        result.append(number)
+    return result
 
 
 def _array(numbers: list[float]) -> Any:

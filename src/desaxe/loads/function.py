@@ -75,8 +75,8 @@ class FunctionOverTheta(OverTheta):
         change = np.abs(np.diff(values, axis=1))
         at = np.arange(len(angles)), change.argmax(axis=1)
         jumps = change[at] > SAME * np.abs(values).max(axis=1)
-        found: list[float] = np.where(jumps, near[:, 1:][at], nodes[:, 0]).tolist()
-        return found
+        result: list[float] = np.where(jumps, near[:, 1:][at], nodes[:, 0]).tolist()
+        return result
 
     def _content(self) -> str:
         angles = [self.every * k / SAMPLES for k in range(SAMPLES)]

@@ -339,19 +339,19 @@ class OverY(Load):
         """
         if isinstance(Y, float) and isinstance(way, float):
             back = self.outward.jumps_at_points and way * self.rises < 0.0
-            found = bisect_left(self.outward.knots, Y) if back else self.outward.piece(Y)
-            return found + len(self.outward.rows) if self.inward is not None and way < 0.0 else found
+            result = bisect_left(self.outward.knots, Y) if back else self.outward.piece(Y)
+            return result + len(self.outward.rows) if self.inward is not None and way < 0.0 else result
         with IMPORTS:
             import numpy as np
 
         knots = self._arrays[0]
-        found = np.searchsorted(knots, Y, side="right")
+        result = np.searchsorted(knots, Y, side="right")
         if self.outward.jumps_at_points:
             left = np.searchsorted(knots, Y, side="left")
-            found = np.where(np.multiply(way, self.rises) < 0.0, left, found)
+            result = np.where(np.multiply(way, self.rises) < 0.0, left, result)
         if self.inward is None:
-            return found
-        return found + np.where(np.less(way, 0.0), len(self.outward.rows), 0)
+            return result
+        return result + np.where(np.less(way, 0.0), len(self.outward.rows), 0)
 
     def held(self, Y: Any, piece: Any) -> tuple[Any, Any]:
         """The load and its derivative by Y on a piece, beyond its ends too; NaN at a non-finite position."""

@@ -61,12 +61,12 @@ def _in_its_units(method: Callable[..., Any]) -> Callable[..., Any]:
     @wraps(method)
     def made(self: Maker, *args: Any, **named: Any) -> Any:
         if len(args) > most:
-            told = f"takes from {least} to {most} positional arguments but {len(args)} were given"
-            raise TypeError(f"{method.__qualname__}() {told}")
+            message = f"takes from {least} to {most} positional arguments but {len(args)} were given"
+            raise TypeError(f"{method.__qualname__}() {message}")
         with errors_in(self.units or SI):
-            found = method(self, *args, **named)
+            result = method(self, *args, **named)
         if self.units:
-            object.__setattr__(found, "shown_in", self.units)
-        return found
+            object.__setattr__(result, "shown_in", self.units)
+        return result
 
     return made

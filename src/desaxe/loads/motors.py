@@ -161,8 +161,8 @@ class Kloss(Motor):
         near = np.concatenate([self.SLIPS, -self.SLIPS])
         far = np.concatenate([1.0 - np.geomspace(1e-3, 0.1, 3), np.linspace(0.9, -3.0, 14)])
         slips = np.concatenate([slip * near, slip * 0.0 + far], axis=-1)
-        found: Array = (1.0 - np.clip(slips, -3.0, 1.0)) * speed / gear
-        return found
+        result: Array = (1.0 - np.clip(slips, -3.0, 1.0)) * speed / gear
+        return result
 
     def _text(self) -> Message:
         return "induction motor: " + listed([named(name, value) for name, value in self.numbers.items()])

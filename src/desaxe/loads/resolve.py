@@ -36,11 +36,11 @@ VARIABLE = ("F_X", "F_Y")  # inputs that may vary with the motion
 def as_load(name: str, value: Any) -> Load:
     """The load that a callable stands for: a function of what its arguments name."""
     if isinstance(value, Load):
-        wanted = "N*m" if name == "torque" else INPUTS[name].unit
+        requested = "N*m" if name == "torque" else INPUTS[name].unit
         if name == "torque" and isinstance(value, OfMotion):
             raise TypeError(f"torque = {value!r}: a torque over theta or omega, or a function, is expected")
-        if value.unit not in (None, wanted):
-            raise ValueError(f"{name}: the load is in {value.unit}, expected {wanted}")
+        if value.unit not in (None, requested):
+            raise ValueError(f"{name}: the load is in {value.unit}, expected {requested}")
         return value
     arguments = arguments_of(name, value, ("theta",) if name == "torque" else COLUMNS)
     if arguments == ("theta",):
@@ -174,8 +174,8 @@ def _new_plan(
         columns = of_motion if parts_of(load) is None else motion
         columns |= dict.fromkeys(load.motion(by, state))
     more = (term.slope for term in every)
-    wanted = tuple(dict.fromkeys((*names, *more)))
-    return LoadPlan(tuple(names), wanted, terms, used, tuple(motion), forces_of, tuple(of_motion))
+    requested = tuple(dict.fromkeys((*names, *more)))
+    return LoadPlan(tuple(names), requested, terms, used, tuple(motion), forces_of, tuple(of_motion))
 
 
 @lru_cache(maxsize=1024)
@@ -210,11 +210,11 @@ def _terms(name: str, force: str, load: Load, state: bool, known: Register) -> t
     return (Term(slope, force, through[0]),)
 
 
-def way_of(given: Mapping[str, Any]) -> Any:
+def way_of(inputs: Mapping[str, Any]) -> Any:
     """The sign of the crank's speed, as a number or array: that of alpha where a given state rests."""
-    speed, alpha = given.get("omega"), given.get("alpha")
+    speed, alpha = inputs.get("omega"), inputs.get("alpha")
     if speed is None:
-        speed, alpha = given.get("omega0"), None
+        speed, alpha = inputs.get("omega0"), None
     if speed is None or alpha is None:
         return 1.0 if speed is None else speed
     with IMPORTS:

@@ -118,11 +118,11 @@ class Table:
     @computed_once
     def range(self) -> tuple[float, float]:
         """The least and the largest value anywhere, between the knots too."""
-        found = list(self.values)
+        result = list(self.values)
         ends = (*self.knots[1:], self.knots[0] + self.period) if self.period is not None else self.knots[1:]
         for row, left, right in zip(self.rows[1:], self.knots, ends, strict=False):
-            found += [polynomial(row, s)[0] for s in _flat_points(row) if 0.0 < s < right - left]
-        return min(found) + 0.0, max(found) + 0.0
+            result += [polynomial(row, s)[0] for s in _flat_points(row) if 0.0 < s < right - left]
+        return min(result) + 0.0, max(result) + 0.0
 
     @computed_once
     def kinks(self) -> tuple[float, ...]:
@@ -138,15 +138,15 @@ class Table:
         """Each knot with two flags: the value jumps, the derivative jumps."""
         slopes = [abs(d) for row in self.rows for d in row[1:]]
         high, steep = max(abs(row[0]) for row in self.rows), max(slopes, default=0.0)
-        found = []
+        result = []
         for i, x in enumerate(self.knots):
             before = len(self.knots) if i == 0 and self.period is not None else i
             end = x + self.period if i == 0 and self.period is not None else x
             left = polynomial(self.rows[before], end - self.origin(before))
             right = self.rows[i + 1]
             jump, kink = abs(left[0] - right[0]) > SAME * high, abs(left[1] - right[1]) > SAME * steep
-            found.append((x, jump, kink))
-        return found
+            result.append((x, jump, kink))
+        return result
 
 
 class Arrays(NamedTuple):
@@ -242,15 +242,15 @@ def _tridiagonal(
     below: Sequence[float], middle: Sequence[float], above: Sequence[float], right: Sequence[float]
 ) -> list[float]:
     """The solution of a diagonally dominant system."""
-    pivots, found = [middle[0]], [right[0]]
+    pivots, result = [middle[0]], [right[0]]
     for i in range(1, len(right)):
         factor = below[i] / pivots[-1]
         pivots.append(middle[i] - factor * above[i - 1])
-        found.append(right[i] - factor * found[-1])
-    found[-1] /= pivots[-1]
+        result.append(right[i] - factor * result[-1])
+    result[-1] /= pivots[-1]
     for i in range(len(right) - 2, -1, -1):
-        found[i] = (found[i] - above[i] * found[i + 1]) / pivots[i]
-    return found
+        result[i] = (result[i] - above[i] * result[i + 1]) / pivots[i]
+    return result
 
 
 def _monotone_slopes(x: Sequence[float], y: Sequence[float]) -> list[float]:
@@ -263,12 +263,12 @@ def _monotone_slopes(x: Sequence[float], y: Sequence[float]) -> list[float]:
     d = [(b - a) / width for (a, b), width in zip(pairwise(y), h, strict=True)]
     if len(d) == 1:
         return [d[0], d[0]]
-    found = [_end_slope(*h[:2], *d[:2])]
+    result = [_end_slope(*h[:2], *d[:2])]
     for (left, right), (before, after) in zip(pairwise(h), pairwise(d), strict=True):
         first, second = 2.0 * right + left, right + 2.0 * left
         same = before * after > 0.0
-        found.append((first + second) / (first / before + second / after) if same else 0.0)
-    return [*found, _end_slope(h[-1], h[-2], d[-1], d[-2])]
+        result.append((first + second) / (first / before + second / after) if same else 0.0)
+    return [*result, _end_slope(h[-1], h[-2], d[-1], d[-2])]
 
 
 def _end_slope(own: float, other: float, chord: float, beyond: float) -> float:
@@ -283,5 +283,5 @@ def _slopes(x: Sequence[float], y: Sequence[float]) -> list[float]:
     """The slopes at the knots of the cubic spline without a period ("not-a-knot")."""
     with needed('a load of kind="cubic" over Y', "simulate"):
         from scipy.interpolate import CubicSpline
-    found: list[float] = CubicSpline(x, y)(x, 1).tolist()
-    return found
+    result: list[float] = CubicSpline(x, y)(x, 1).tolist()
+    return result

@@ -112,12 +112,12 @@ class MakeOverTheta(MakeTable):
     def _period(self, period: Any) -> Column:
         if isinstance(period, float) and period == TURN:  # a turn, in any unit
             return Column([TURN])
-        found = column_of("over_theta: period", [period], ("rad",), self.unit("theta"))
-        if not 0.0 < found.values[0] <= LONGEST_PERIOD:
+        result = column_of("over_theta: period", [period], ("rad",), self.unit("theta"))
+        if not 0.0 < result.values[0] <= LONGEST_PERIOD:
             most = amount("theta", LONGEST_PERIOD, "g", says_unit=True)
             limit = ": expected an angle above 0 and at most " + most
             raise ValueError(f"over_theta: period = {shown(period)}" + limit)
-        return found
+        return result
 
 
 class MakeOverY(MakeTable):

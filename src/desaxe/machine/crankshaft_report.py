@@ -107,7 +107,7 @@ def _balance(shaft: Any) -> Section:
     series = {name: shaft.harmonics(name, orders=ORDERS) for name in balance}
     first = series[balance[0]]["order"]
     rows = [
-        (f"{order:g}", *(cell(found["amplitude"][k]) for found in series.values()))
+        (f"{order:g}", *(cell(result["amplitude"][k]) for result in series.values()))
         for k, order in enumerate(first)
         if order == int(order)
     ]

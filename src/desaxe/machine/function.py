@@ -26,11 +26,11 @@ class FunctionInUnits:
     def __call__(self, *args: Any, out: Any = None, **named: Any) -> Any:
         """The values: an array for a name, a tuple for a list of names."""
         with errors_in(self._show.system):
-            found = self.si(*self._positional(args), **self._named(named))
-        if not isinstance(found, tuple):
-            shown = self._value(found, self.names[0])
+            result = self.si(*self._positional(args), **self._named(named))
+        if not isinstance(result, tuple):
+            shown = self._value(result, self.names[0])
             return shown if out is None else _filled(out, shown)
-        values = tuple(self._value(v, name) for v, name in zip(found, self.names, strict=True))
+        values = tuple(self._value(v, name) for v, name in zip(result, self.names, strict=True))
         if out is None:
             return values
         outs = [out[name] for name in self.names] if isinstance(out, Mapping) else out
@@ -39,10 +39,10 @@ class FunctionInUnits:
     def jacobian(self, *args: Any, **named: Any) -> dict[str, dict[str, Any]]:
         """The exact derivatives by the inputs: dict name -> dict input -> array."""
         with errors_in(self._show.system):
-            found = self.si.jacobian(*self._positional(args), **self._named(named))
+            result = self.si.jacobian(*self._positional(args), **self._named(named))
         return {
             name: {by: self._show.entry(value, unit_of(name, by)) for by, value in row.items()}
-            for name, row in found.items()
+            for name, row in result.items()
         }
 
     def _positional(self, args: tuple[Any, ...]) -> list[Any]:

@@ -37,11 +37,11 @@ class NoInputError(KeyError):
 
     def __str__(self) -> str:
         name, machine = self.args
-        if told := _as_quantity(name):
-            return f"a machine has no input {name!r}; {told}"
+        if message := _as_quantity(name):
+            return f"a machine has no input {name!r}; {message}"
         near = _meant(name, machine) or _meant(name, INPUTS)
-        given = "" if near in machine else ", which is not given"
-        hint = f"did you mean {near}{given}?" if near else f"it has {', '.join(machine)}"
+        inputs = "" if near in machine else ", which is not given"
+        hint = f"did you mean {near}{inputs}?" if near else f"it has {', '.join(machine)}"
         return f"a machine has no input {name!r}; {hint}"
 
 
@@ -49,8 +49,8 @@ class NoAttributeError(AttributeError):
     """A machine has no such method; the message names the nearest one."""
 
     def __str__(self) -> str:
-        if told := _as_quantity(self.name):
-            return f"a machine has no method {self.name!r}; {told}"
+        if message := _as_quantity(self.name):
+            return f"a machine has no method {self.name!r}; {message}"
         near = _meant(self.name, (name for name in dir(self.obj) if name[0] != "_"))
         there = f"; its inputs are machine[{self.name!r}] and so on" if self.name in INPUTS else ""
         return f"a machine has no method {self.name!r}" + (f"; did you mean {near}?" if near else there)
@@ -181,16 +181,16 @@ class Machine(Mapping[str, Any]):
 
     def in_units(self) -> dict[str, Any]:
         """The inputs in the units of the machine: numbers as they were given."""
-        found = {}
+        result = {}
         for name, value in self._inputs.items():
             own = self._given.get(name)
             if isinstance(own, (int, float)) and not isinstance(own, bool):
-                found[name] = own
+                result[name] = own
             elif name in ("branch", "sliders") or callable(value):
-                found[name] = value
+                result[name] = value
             else:
-                found[name] = self.units.of(name).shown(value)
-        return found
+                result[name] = self.units.of(name).shown(value)
+        return result
 
     @property
     def plot(self) -> Plots:
@@ -373,8 +373,8 @@ def checked_inputs(si: Mapping[str, Any]) -> dict[str, Any]:
             raise unknown_input("Machine", name, [*allowed, *({"units"} - {name})])
     branch = si.get("branch", 1)
     check_common(si, branch)
-    found = {name: _checked(name, si[name]) for name in INPUTS if si.get(name) is not None}
-    return {**found, "branch": -1} if branch == -1 else found
+    result = {name: _checked(name, si[name]) for name in INPUTS if si.get(name) is not None}
+    return {**result, "branch": -1} if branch == -1 else result
 
 
 def _checked(name: str, value: Any) -> Any:

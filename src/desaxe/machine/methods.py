@@ -173,12 +173,12 @@ def filled(machine: Mapping[str, Any], name: str, takes: Takes, given: Mapping[s
     free = (free,) if isinstance(free, str) else tuple(free)
     left = {*given, *(EITHER[key] for key in (*given, *free) if key in EITHER), *free}
     left.update(NOT_FILLED.get(name, ()))
-    found = {
+    result = {
         key: value
         for key, value in machine.items()
         if key not in left and (takes.anything or key in takes.names or _is_initial_speed(name, value))
     }
-    return found | _wishes(machine, given) if name == "synthesize" else found
+    return result | _wishes(machine, given) if name == "synthesize" else result
 
 
 def _starts(machine: Any, over: Any) -> Any:
@@ -195,14 +195,14 @@ def _is_initial_speed(name: str, value: Any) -> bool:
 
 def _wishes(machine: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
     """Requirements of a synthesis that the machine meets itself: stroke, time ratio, rod."""
-    found = {}
+    result = {}
     if not all(key in given for key in ("stroke", "time_ratio")):
         lengths = {key: machine[key] for key in FILLED if key in machine}
         own = import_function("events")(**lengths) if len(lengths) == len(FILLED) else {}
-        found = {key: own[key] for key in ("stroke", "time_ratio") if key in own and key not in given}
+        result = {key: own[key] for key in ("stroke", "time_ratio") if key in own and key not in given}
     if not any(given.get(key) is not None for key in WISHES) and "BC" in machine:
-        found["BC"] = machine["BC"]
-    return found
+        result["BC"] = machine["BC"]
+    return result
 
 
 def _delivered(result: Any, out: Any) -> Any:
@@ -237,13 +237,13 @@ def _shown(found: Any, machine: Any, named: Mapping[str, Any], show: Shown) -> A
     return found if not isinstance(names, str) or names == "status" else show.entry(found, unit_of(names))
 
 
-def _as_given(found: Any, call: Mapping[str, Any]) -> dict[str, Any]:
+def _as_given(result: Any, call: Mapping[str, Any]) -> dict[str, Any]:
     """The coordinates that were given as plain numbers."""
-    kept = {key: value for key, value in call.items() if key in found.coords and _is_plain(value)}
+    kept = {key: value for key, value in call.items() if key in result.coords and _is_plain(value)}
     return {
         key: value
         for key, value in kept.items()
-        if found[key].shape == ((len(value),) if hasattr(value, "__len__") else ())
+        if result[key].shape == ((len(value),) if hasattr(value, "__len__") else ())
     }
 
 

@@ -119,11 +119,11 @@ class Plots:
 
         load  of `over_theta`, `over_Y` or `over_stroke`, or "F_X" or "F_Y" for that of the machine
         """
-        found = self._machine[load] if isinstance(load, str) else load
-        if not callable(found):
+        result = self._machine[load] if isinstance(load, str) else load
+        if not callable(result):
             raise TypeError(f"plot.load: {load} is a number, which does not vary with the motion")
         return plot.load(
-            found if isinstance(found, Load) else as_load("F_Y", found), ax=ax, units=self._machine.units
+            result if isinstance(result, Load) else as_load("F_Y", result), ax=ax, units=self._machine.units
         )
 
     def animate(
@@ -202,21 +202,21 @@ def _tornado(
     design = machine.replace(**values)
     turns = "theta" in program_of((name,)).inputs
     if turns and (theta is None or isinstance(theta, (tuple, list))):
-        found = design.peak(name, kind=kind, **({} if theta is None else {"theta": theta}))
-        told = f"{WORDS[kind]} of {value_text(found, name, design.units)}"
-        told += SIDES.get(found["side"], "")
+        result = design.peak(name, kind=kind, **({} if theta is None else {"theta": theta}))
+        message = f"{WORDS[kind]} of {value_text(result, name, design.units)}"
+        message += SIDES.get(result["side"], "")
     else:
-        found = _at_a_point(design, name, {"theta": theta} if turns else {})
-        told = value_text(found, name, design.units)
-    steps = {**spread, **(changes or {})} or _shares(design, found["gradient"])
-    title = f"{told}\n{title_of(labelled_inputs(design, [name]), [name])}"
-    return plot.tornado(found, steps, name=name, units=design.units, title=title, ax=ax)
+        result = _at_a_point(design, name, {"theta": theta} if turns else {})
+        message = value_text(result, name, design.units)
+    steps = {**spread, **(changes or {})} or _shares(design, result["gradient"])
+    title = f"{message}\n{title_of(labelled_inputs(design, [name]), [name])}"
+    return plot.tornado(result, steps, name=name, units=design.units, title=title, ax=ax)
 
 
 def labelled_inputs(design: Any, names: Any) -> Any:
     """A Dataset without values: the inputs of a machine with its units, for a title."""
-    given = {key: value for key, value in design.items() if key != "branch"}
-    empty = as_dataset(dict.fromkeys(names, 0.0), "theta", {**given, "theta": 0.0})
+    inputs = {key: value for key, value in design.items() if key != "branch"}
+    empty = as_dataset(dict.fromkeys(names, 0.0), "theta", {**inputs, "theta": 0.0})
     named: Any = in_units(empty.drop_vars("theta"), design.units)
     return named.assign_attrs(branch=design.get("branch", 1))
 
@@ -243,8 +243,8 @@ def _at_a_point(design: Any, name: str, theta: Mapping[str, Any]) -> dict[str, A
     """The value and its derivatives by the machine's inputs, as a peak gives them."""
     rows = {p: sensitivity(name, p) for p in design if p != "branch"}
     rows = {p: row for p, row in rows.items() if has(row, "omega" in design)}
-    found = design.evaluate([name, *rows.values()], **theta)
-    return {"value": found[name], "gradient": {p: found[row] for p, row in rows.items()}, **theta}
+    result = design.evaluate([name, *rows.values()], **theta)
+    return {"value": result[name], "gradient": {p: result[row] for p, row in rows.items()}, **theta}
 
 
 def _shares(design: Any, slopes: Mapping[str, Any]) -> dict[str, float]:

@@ -60,10 +60,10 @@ def _geometry(machine: Any) -> list[tuple[str, str, str]]:
     if not can_turn:
         kind = feasibility(**lengths)["kind"]
         return [("turns", f"no ({kind})" if kind != "none" else "no, it cannot be assembled", rows[0][2])]
-    told = events(branch=machine.get("branch", 1), **lengths)
+    message = events(branch=machine.get("branch", 1), **lengths)
     for name, meaning in (("stroke", "of the slider"), ("time_ratio", "slow stroke to quick one")):
         unit = machine.units.of("ec").unit if name == "stroke" else "1"
-        value = machine.units.of("ec").shown(told[name]) if name == "stroke" else told[name]
+        value = machine.units.of("ec").shown(message[name]) if name == "stroke" else message[name]
         if isfinite(value):
             rows.append((name, _value(value, unit), meaning))
     return rows

@@ -12,9 +12,9 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 
-def check_inputs(caller: str, given: Iterable[str], allowed: Sequence[str]) -> None:
+def check_inputs(caller: str, inputs: Iterable[str], allowed: Sequence[str]) -> None:
     """TypeError for an unknown input, with similar names."""
-    for name in given:
+    for name in inputs:
         if name not in allowed:
             raise unknown_input(caller, name, allowed)
 

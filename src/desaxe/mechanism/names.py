@@ -46,13 +46,13 @@ def parts(name: str) -> tuple[str, tuple[str, ...]]:
     What follows `_wrt_` and is no parameter stays whole, as a parameter that nobody knows.
     """
     base, joint, rest = name.partition(_JOINT)
-    found: list[str] = []
+    result: list[str] = []
     while joint and rest:
         known = [p for p in ORDER if rest == p or rest.startswith(f"{p}_")]
         parameter = max(known, key=len, default=rest)
-        found.append(parameter)
+        result.append(parameter)
         rest = rest[len(parameter) + 1 :]
-    return base, tuple(found)
+    return base, tuple(result)
 
 
 @lru_cache(maxsize=4096)

@@ -104,17 +104,17 @@ def used_by(names: Iterable[str], known: Register | None = None) -> tuple[Defini
 
 def closure(names: Iterable[str], known: Mapping[str, Definition]) -> tuple[Definition, ...]:
     """The definitions behind names, each behind those that it uses."""
-    found: dict[str, Definition] = {}
+    result: dict[str, Definition] = {}
 
     def visit(name: str) -> None:
-        if name in known and name not in found:
+        if name in known and name not in result:
             for used in known[name].uses:
                 visit(parts(used)[0])
-            found[name] = known[name]
+            result[name] = known[name]
 
     for name in names:
         visit(name)
-    return tuple(found.values())
+    return tuple(result.values())
 
 
 def leaves(names: Iterable[str], known: Mapping[str, Definition]) -> tuple[str, ...]:

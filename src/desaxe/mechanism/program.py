@@ -58,9 +58,9 @@ def _program_of(names: tuple[str, ...], form: Variant) -> Program:
         base = _program_of(tuple(dict.fromkeys(others)), form._replace(own=()))
         return with_own_lines(base, names, form.own)
     if form.default_centres:
-        given, halfway = _program_of(names, form._replace(default_centres=())), _text("centres").read()
+        inputs, halfway = _program_of(names, form._replace(default_centres=())), _text("centres").read()
         moved = [name for name in halfway.outputs if name.startswith(form.default_centres)]
-        return overlay(given, keep_outputs(halfway, moved))
+        return overlay(inputs, keep_outputs(halfway, moved))
     if form.state:
         return overlay(_program_of(names, form._replace(state=False)), _text("state").read())
     return assume(_text("program").read(names), {"wide_margins": form.wide_margins})

@@ -163,21 +163,21 @@ def units_of(names: Iterable[str]) -> dict[str, QuantityUnit]:
     return {name: unit_of(name) for name in names}
 
 
-def units_by_name(found: Mapping[Any, Any]) -> dict[Any, Any]:
+def units_by_name(result: Mapping[Any, Any]) -> dict[Any, Any]:
     """The units of an answer whose keys are the names of what they are, those of `gradient` too."""
-    names = (key for key in found if isinstance(key, str) and key != "status" and SI.find(key))
+    names = (key for key in result if isinstance(key, str) and key != "status" and SI.find(key))
     units: dict[Any, Any] = units_of(names)
-    if "gradient" in found:
-        units["gradient"] = {name: slopes_of(name, slopes) for name, slopes in found["gradient"].items()}
+    if "gradient" in result:
+        units["gradient"] = {name: slopes_of(name, slopes) for name, slopes in result["gradient"].items()}
     return units
 
 
-def units_of_extreme(name: str, found: Mapping[Any, Any]) -> dict[str, Any]:
+def units_of_extreme(name: str, result: Mapping[Any, Any]) -> dict[str, Any]:
     """The units of an extreme value of a quantity, where it is reached, and its gradient."""
     return {
         "value": unit_of(name),
         "theta": unit_of("theta"),
-        "gradient": slopes_of(name, found["gradient"]),
+        "gradient": slopes_of(name, result["gradient"]),
     }
 
 

@@ -79,12 +79,12 @@ def ends_of(name: str, given: PlusMinus) -> tuple[float, float]:
     return rounded(name, str(given), value - tolerance), rounded(name, str(given), value + tolerance)
 
 
-def middle_of(name: str, given: Between) -> tuple[float, float]:
+def middle_of(name: str, value: Between) -> tuple[float, float]:
     """The middle of a range and half its width; ValueError where the lower end is not first."""
-    low, high = (_number(name, end, given) for end in given)
+    low, high = (_number(name, end, value) for end in value)
     if low > high:
-        raise ValueError(named(name, given) + ": the lower end comes first")
-    return rounded(name, str(given), (low + high) / 2), rounded(name, str(given), (high - low) / 2)
+        raise ValueError(named(name, value) + ": the lower end comes first")
+    return rounded(name, str(value), (low + high) / 2), rounded(name, str(value), (high - low) / 2)
 
 
 def _tolerance(name: str, given: PlusMinus) -> tuple[Fraction, Fraction]:
@@ -92,12 +92,12 @@ def _tolerance(name: str, given: PlusMinus) -> tuple[Fraction, Fraction]:
     tolerance = with_unit_of(given.value, given.tolerance)
     if isinstance(tolerance, str) and tolerance.strip().endswith("%"):
         share = _number("mu", tolerance.strip().removesuffix("%"), given) / 100  # a plain number
-        found = share * abs(value)
+        result = share * abs(value)
     else:
-        found = _number(name, tolerance, given)
-    if found < 0:
+        result = _number(name, tolerance, given)
+    if result < 0:
         raise ValueError(named(name, given) + ": a tolerance must be at least 0")
-    return value, found
+    return value, result
 
 
 def _number(name: str, value: Any, whole: Any) -> Fraction:

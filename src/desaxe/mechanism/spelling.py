@@ -50,8 +50,8 @@ def meant(word: str, allowed: Iterable[str], most: int = 1) -> list[str]:
     key = word.lower()
     spelled = [name for near in get_close_matches(key, by_case, most, 0.6) for name in by_case[near]]
     same = [name for name in WORDS.get(key, ()) if name in by_case.get(name.lower(), ())]
-    found = spelled if key in by_case else [*same[:1], *spelled]
-    return list(dict.fromkeys(found))[:most]
+    result = spelled if key in by_case else [*same[:1], *spelled]
+    return list(dict.fromkeys(result))[:most]
 
 
 def did_you_mean(word: str, allowed: Iterable[str], most: int = 1) -> str:

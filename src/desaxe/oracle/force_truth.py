@@ -94,21 +94,21 @@ def _constant(value: arb | int, like: Jet) -> Jet:
 
 def _given(at: Point) -> dict[str, Jet]:
     """The parameters by name, the speed as omega0 whichever it is."""
-    given = {name: _jet(at, number) for number, name in enumerate(PARAMETERS)}
+    inputs = {name: _jet(at, number) for number, name in enumerate(PARAMETERS)}
     for centre, link in (("r_crank", "AB"), ("r_rod", "BC")):
         if at.values[PARAMETERS.index(centre)] is None:
-            given[centre] = given[centre] + given[link] * _constant(arb("0.5"), given[link])
+            inputs[centre] = inputs[centre] + inputs[link] * _constant(arb("0.5"), inputs[link])
     if at.still:
-        given["omega0"] = given["omega0"] + _constant(sign(at.values[4]) * REST, given["omega0"])
-    return given
+        inputs["omega0"] = inputs["omega0"] + _constant(sign(at.values[4]) * REST, inputs["omega0"])
+    return inputs
 
 
 @lru_cache(maxsize=256)
 def _mechanism(at: Point, bits: int, unit_speed: bool = False) -> Mechanism | None:
     """The moving mechanism, or that at speed 1; None if it cannot be assembled, or with too few bits."""
     with precision(bits, terms=3):
-        given = _given(at)
-        theta, ec, AB, BC, omega, alpha = (given[p] for p in LAW)
+        inputs = _given(at)
+        theta, ec, AB, BC, omega, alpha = (inputs[p] for p in LAW)
         if unit_speed:
             theta = turning(theta, _constant(1, theta), Jet({}, theta.order), law=False)
         else:
@@ -116,11 +116,11 @@ def _mechanism(at: Point, bits: int, unit_speed: bool = False) -> Mechanism | No
         sine, cosine, across, rise = loop(theta, ec, AB, BC, at.branch)
         B = AB * sine, AB * cosine
         C = ec.times(-1), B[1] + rise
-        along = given["r_rod"] * BC.inverse()
-        crank = given["r_crank"] * sine, given["r_crank"] * cosine
+        along = inputs["r_rod"] * BC.inverse()
+        crank = inputs["r_crank"] * sine, inputs["r_crank"] * cosine
         rod = B[0] - along * across, B[1] + along * rise
         moving = theta.rate(2) + C[1].rate(2)
-        return Mechanism(given, theta, B, C, crank, rod) if moving.terms[()][0].is_finite() else None
+        return Mechanism(inputs, theta, B, C, crank, rod) if moving.terms[()][0].is_finite() else None
 
 
 def _rod_turn(mechanism: Mechanism) -> Jet:
@@ -153,19 +153,19 @@ def _body(
 
 def _equations(mechanism: Mechanism, friction: int) -> list[Equation]:
     """The three free bodies; the guide's friction is mu N_C times 1, -1 or nothing, against +Y."""
-    given, B, C = mechanism.given, mechanism.B, mechanism.C
-    one, nothing = _constant(1, given["AB"]), Jet({}, given["AB"].order)
-    crank_spin = given["I_crank"] * mechanism.theta.rate(2)
-    rod_spin = given["I_rod"] * _rod_turn(mechanism)
+    inputs, B, C = mechanism.given, mechanism.B, mechanism.C
+    one, nothing = _constant(1, inputs["AB"]), Jet({}, inputs["AB"].order)
+    crank_spin = inputs["I_crank"] * mechanism.theta.rate(2)
+    rod_spin = inputs["I_rod"] * _rod_turn(mechanism)
     held = [("A", 1, (nothing, nothing)), ("B", -1, B)]
-    crank = _body(held, given["m_crank"], mechanism.crank, crank_spin, mechanism)
-    rod = _body([("B", 1, B), ("C", -1, C)], given["m_rod"], mechanism.rod, rod_spin, mechanism)
-    slider = _body([("C", 1, C)], given["m_slider"], C, nothing, mechanism)[:2]  # it does not turn
+    crank = _body(held, inputs["m_crank"], mechanism.crank, crank_spin, mechanism)
+    rod = _body([("B", 1, B), ("C", -1, C)], inputs["m_rod"], mechanism.rod, rod_spin, mechanism)
+    slider = _body([("C", 1, C)], inputs["m_slider"], C, nothing, mechanism)[:2]  # it does not turn
     crank[2][0]["T_in"] = one
     slider[0][0]["N_C"] = slider[1][0]["F_friction"] = one
     loads = zip(slider, ("F_X", "F_Y"), strict=True)
-    slider = [(left, right - given[load]) for (left, right), load in loads]
-    coulomb = {"F_friction": one, "N_C": given["mu"].times(friction)}, nothing
+    slider = [(left, right - inputs[load]) for (left, right), load in loads]
+    coulomb = {"F_friction": one, "N_C": inputs["mu"].times(friction)}, nothing
     return [*crank, *rod, *slider, coulomb]
 
 
@@ -211,15 +211,15 @@ def _balances(at: Point, bits: int) -> list[dict[str, Jet]] | None:
         if slope is None:
             return None
         slides = slope * at.direction if mechanism.given["mu"].terms else 0
-        found = []
+        result = []
         for side in (1, -1) if slides else (0,):
             balance = _solve(_equations(mechanism, side * slides), at.still)
             pushes = tendency(_leading(balance["N_C"]), at.still) if balance else None
             if balance is None or (balance and pushes is None):
                 return None
             if balance and (pushes == side or side == 0 or (pushes == 0 and side == 1)):
-                found.append(balance)
-        return found
+                result.append(balance)
+        return result
 
 
 def _magnitude(x: Jet, y: Jet) -> Jet:
@@ -238,10 +238,10 @@ def _touched(at: Point, bits: int) -> dict[str, Jet] | None:
     if len(balances) != 1:
         return {}
     with precision(bits):
-        found = balances[0] | {"power_in": balances[0]["T_in"] * mechanism.theta.rate(1)}
+        result = balances[0] | {"power_in": balances[0]["T_in"] * mechanism.theta.rate(1)}
         for joint in "ABC":
-            found[f"F_{joint}"] = _magnitude(found[f"F_{joint}_X"], found[f"F_{joint}_Y"])
-        return found | {"P_friction": (found["F_friction"] * mechanism.C[1].rate(1)).times(-1)}
+            result[f"F_{joint}"] = _magnitude(result[f"F_{joint}_X"], result[f"F_{joint}_Y"])
+        return result | {"P_friction": (result["F_friction"] * mechanism.C[1].rate(1)).times(-1)}
 
 
 @lru_cache(maxsize=256)
@@ -268,24 +268,24 @@ def _inertia(at: Point, bits: int) -> dict[str, Jet] | None:
     if mechanism is None:
         return None
     with precision(bits):
-        given = mechanism.given
-        nothing = Jet({}, given["AB"].order)
+        inputs = mechanism.given
+        nothing = Jet({}, inputs["AB"].order)
         X, Y = nothing, nothing
-        M = given["I_crank"] * mechanism.theta.rate(2) + given["I_rod"] * _rod_turn(mechanism)
+        M = inputs["I_crank"] * mechanism.theta.rate(2) + inputs["I_rod"] * _rod_turn(mechanism)
         for mass, (x, y) in zip(BODIES[:3], (mechanism.crank, mechanism.rod, mechanism.C), strict=True):
-            force_X, force_Y = given[mass] * x.rate(2), given[mass] * y.rate(2)
+            force_X, force_Y = inputs[mass] * x.rate(2), inputs[mass] * y.rate(2)
             X, Y, M = X + force_X, Y + force_Y, M + y.rate(0) * force_X - x.rate(0) * force_Y
         return {name: rate.times(-1) for name, rate in zip(INERTIA, (X, Y, M), strict=True)}
 
 
 def _kinetic_energy(mechanism: Mechanism) -> Jet:
     """Half of mass times speed squared, of the centres; half of inertia times turning speed squared."""
-    given, (B_X, B_Y), (C_X, C_Y) = mechanism.given, mechanism.B, mechanism.C
-    x, y, length = C_X - B_X, C_Y - B_Y, given["BC"].inverse()
+    inputs, (B_X, B_Y), (C_X, C_Y) = mechanism.given, mechanism.B, mechanism.C
+    x, y, length = C_X - B_X, C_Y - B_Y, inputs["BC"].inverse()
     rod_turns = (y.rate(0) * x.rate(1) - x.rate(0) * y.rate(1)) * length * length
-    speeds = [(given["I_crank"], mechanism.theta.rate(1)), (given["I_rod"], rod_turns)]
+    speeds = [(inputs["I_crank"], mechanism.theta.rate(1)), (inputs["I_rod"], rod_turns)]
     centres = (("m_crank", mechanism.crank), ("m_rod", mechanism.rod), ("m_slider", mechanism.C))
-    speeds += [(given[mass], p.rate(1)) for mass, place in centres for p in place]
+    speeds += [(inputs[mass], p.rate(1)) for mass, place in centres for p in place]
     twice = sum((mass * speed * speed for mass, speed in speeds), Jet({}, x.order))
     return twice * _constant(arb("0.5"), twice)
 
@@ -295,12 +295,12 @@ def _energies(at: Point, bits: int) -> dict[str, Jet] | None:
     moving, steady = _mechanism(at, bits), _mechanism(at, bits, unit_speed=True)
     if steady is None:
         return None
-    given = steady.given
+    inputs = steady.given
     with precision(bits, terms=3):
         energies = {"M_eff": _kinetic_energy(steady).times(2), "potential_energy": Jet({}, len(at.by))}
         for mass, place in (("m_crank", steady.crank), ("m_rod", steady.rod), ("m_slider", steady.C)):
             for axis, p in zip("XY", place, strict=True):
-                energies["potential_energy"] -= given[mass] * given[f"g_{axis}"] * p.rate(0)
+                energies["potential_energy"] -= inputs[mass] * inputs[f"g_{axis}"] * p.rate(0)
         return energies | ({"kinetic_energy": _kinetic_energy(moving)} if moving else {})
 
 
@@ -308,13 +308,13 @@ def _energies(at: Point, bits: int) -> dict[str, Jet] | None:
 def _masses(at: Point, bits: int) -> dict[str, Jet]:
     """The papers' masses at B, and at C; they need no shape, so no mechanism."""
     with precision(bits):
-        given = _given(at)
-        m_rod, r_rod, AB, BC = (given[p] for p in ("m_rod", "r_rod", "AB", "BC"))
-        of_crank = given["m_crank"] * given["r_crank"] * AB.inverse()
+        inputs = _given(at)
+        m_rod, r_rod, AB, BC = (inputs[p] for p in ("m_rod", "r_rod", "AB", "BC"))
+        of_crank = inputs["m_crank"] * inputs["r_crank"] * AB.inverse()
         return {
             "m_rotating": m_rod * (BC - r_rod) * BC.inverse() + of_crank,
-            "m_reciprocating": given["m_slider"] + m_rod * r_rod * BC.inverse(),
-            "I_lumping": m_rod * r_rod * (BC - r_rod) - given["I_rod"],
+            "m_reciprocating": inputs["m_slider"] + m_rod * r_rod * BC.inverse(),
+            "I_lumping": m_rod * r_rod * (BC - r_rod) - inputs["I_rod"],
         }
 
 
@@ -344,8 +344,8 @@ def _point(
         raise TypeError(f"unknown: {', '.join(others.keys() - set(OTHERS))}")
     motion = (theta, ec, AB, BC, omega0 if omega is None else omega, alpha)
     centres = dict.fromkeys(("r_crank", "r_rod"))
-    given = dict.fromkeys(OTHERS, 0.0) | centres | others
-    values = (*motion, *(given[name] for name in OTHERS))
+    inputs = dict.fromkeys(OTHERS, 0.0) | centres | others
+    values = (*motion, *(inputs[name] for name in OTHERS))
     return Point(tuple(x if x is None else float(x) for x in values), omega is None, branch, by)
 
 
@@ -402,6 +402,6 @@ def conditions(name: str, gap: str = "margin", others: Iterable[str] = (), **poi
     and given; a derivative by AB or BC moves a centre of mass that is not given.
     """
     has_others = name.partition("_wrt_")[0] in FORCES
-    given = tuple(p for p in others if has_others and point.get(p))
+    inputs = tuple(p for p in others if has_others and point.get(p))
     plain = {p: value for p, value in point.items() if value is not None}
-    return kinematic.conditions(name, gap, given, truth, **plain)
+    return kinematic.conditions(name, gap, inputs, truth, **plain)

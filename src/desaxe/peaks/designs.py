@@ -129,18 +129,18 @@ MOST_PLANS = 1024
 _PLANS: dict[Any, PeakPlan] = {}
 
 
-def plan_of(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> PeakPlan:
+def plan_of(name: str, inputs: dict[str, Any], branch: int, accuracy: Any) -> PeakPlan:
     """The plan of a request, which depends on its names only."""
-    shown = frozenset(n for n, value in given.items() if value is not None)
+    shown = frozenset(n for n, value in inputs.items() if value is not None)
     if type(accuracy) is not str or accuracy != "standard":
         accuracy = accuracy_of(accuracy)
     now = register()
-    key = name, shown, is_steady(given["alpha"]), branch, accuracy, now
+    key = name, shown, is_steady(inputs["alpha"]), branch, accuracy, now
     plan = _PLANS.get(key)
     if plan is None:
         if len(_PLANS) > MOST_PLANS:
             _PLANS.clear()
-        plan = _PLANS[key] = _new_plan(name, dict(given), branch, accuracy, now)
+        plan = _PLANS[key] = _new_plan(name, dict(inputs), branch, accuracy, now)
     return plan
 
 
@@ -151,30 +151,30 @@ def _new_plan(name: str, given: dict[str, Any], branch: int, accuracy: Any, know
     quantity(name, state, known)
     slope = sensitivity(name, "theta")
     names = (name, slope) if has(slope, state, known) else (name,)
-    wanted = request(names, given, branch, accuracy, known)
-    parameters = tuple(n for n in wanted.inputs if n != "theta")
+    requested = request(names, given, branch, accuracy, known)
+    parameters = tuple(n for n in requested.inputs if n != "theta")
     if "omega0" not in parameters and given["omega0"] is None and not state:
         given["omega0"] = 0.0
     if "mu" not in parameters:
         given["mu"] = None  # what friction does matters to forces only
-    told = request((STATUS,), {**given, "theta": 0.0}, branch, accuracy, known).inputs
-    needs = (*parameters, *(n for n in told if n not in (*parameters, "theta")))
-    return PeakPlan(wanted, parameters, needs)
+    message = request((STATUS,), {**given, "theta": 0.0}, branch, accuracy, known).inputs
+    needs = (*parameters, *(n for n in message if n not in (*parameters, "theta")))
+    return PeakPlan(requested, parameters, needs)
 
 
 def search_of(plan: PeakPlan, arrays: dict[str, Array], ends: tuple[float, float]) -> Search:
     """The search to compile; a scalar input of 0 is folded unless the gradient needs it."""
-    wanted = plan.wanted
-    name = wanted.names[0]
+    requested = plan.wanted
+    name = requested.names[0]
     known = [n for n in STRUCTURAL_ZEROS if n in plan.parameters and n in arrays]
     zeros = [n for n in known if arrays[n].size == 1 and arrays[n].item() == 0.0]
     if zeros:
         kept = needs_own(name, plan.parameters)
         zeros = [n for n in zeros if n not in kept]
-    fixed = (*wanted.fixed, *((n, 0.0) for n in zeros))
-    extended = wanted.accuracy == "extended"
+    fixed = (*requested.fixed, *((n, 0.0) for n in zeros))
+    extended = requested.accuracy == "extended"
     far = max(abs(ends[0]), abs(ends[1])) > constants().limit
-    return Search(name, plan.parameters, wanted.form, fixed, extended, far)
+    return Search(name, plan.parameters, requested.form, fixed, extended, far)
 
 
 def peaks_of_designs(sought: Sought, search: Search, columns: dict[str, Array]) -> dict[str, Any]:
@@ -289,11 +289,11 @@ class PartialSearch:
             nodes = with_nodes(nodes, self._rubbing(rows, nodes, search))
             nodes = np.ascontiguousarray(balanced_nodes(some, nodes.T).T)
         self._run(self.quantity, rows, nodes)
-        found = self._found(rows)
+        result = self._found(rows)
         usable = complete(
-            self.name, self.kind, some, nodes.T, limits, found, search.parameters, *self._marks(rows)
+            self.name, self.kind, some, nodes.T, limits, result, search.parameters, *self._marks(rows)
         )
-        self.out[0, rows], self.theta[rows], self.status[rows] = found.value, found.theta, found.status
+        self.out[0, rows], self.theta[rows], self.status[rows] = result.value, result.theta, result.status
         self.out[2:, rows] = np.where(usable, self.out[2:, rows], np.nan)
 
     def _run(self, quantity: Quantity, rows: Rows, nodes: Array) -> None:

@@ -145,9 +145,9 @@ def _certain(
     angles = np.clip(theta[:, None] + steps, *values.designs.theta)
     designs, name = values.designs.part(rows), values.all[0]
     numbers = np.repeat(np.arange(rows.size), STEPS.size)
-    found = designs.values((name,), numbers, angles.reshape(-1))[name].reshape(angles.shape)
+    result = designs.values((name,), numbers, angles.reshape(-1))[name].reshape(angles.shape)
     (value, slope), room = limit[:, :, None], 4.0 * ROUNDED * np.spacing(1.0 + np.abs(theta))
-    good = np.abs(found - value) <= APART * np.abs(value) + np.abs(slope) * room[:, None]
+    good = np.abs(result - value) <= APART * np.abs(value) + np.abs(slope) * room[:, None]
     good[:, :-1] &= good[:, 1:]
     first = np.where(good.any(axis=1), good.argmax(axis=1), 0)
     nearest: Array = angles[np.arange(rows.size), first]

@@ -50,10 +50,10 @@ class ValuesUnderLoads:
         """
         held = self.course.pieces(rows, theta) if pieces is None else pieces
         aside = self.course.aside(rows, theta) if pieces is None and self.designs.rubs else theta
-        found = [*self._of_totals(count, rows, aside, held)][:count]
+        result = [*self._of_totals(count, rows, aside, held)][:count]
         if aside is not theta:
-            found[0] = np.where(aside == theta, found[0], found[0] + found[1] * (theta - aside))
-        return found
+            result[0] = np.where(aside == theta, result[0], result[0] + result[1] * (theta - aside))
+        return result
 
     def _of_totals(self, count: int, rows: Rows, theta: Array, held: dict[str, Rows]) -> Sequence[Array]:
         """Value, slope and gradient by machine code, or the first two."""
@@ -79,10 +79,10 @@ class ValuesUnderLoads:
         known = evaluate_arrays(motion, motion.inputs, flat, 1, None)
         of_motion = [n for n in needed if n not in columns and n != "theta"]
         loads = {n: a for n, a in self.designs.loads.items() if isinstance(a, OfMotion)}
-        found = LoadInputs(loads, tuple(of_motion), motion).at(flat, known)
+        result = LoadInputs(loads, tuple(of_motion), motion).at(flat, known)
         return {
             name: np.broadcast_to(x, flat["theta"].shape).reshape(given["theta"].shape)
-            for name, x in found.items()
+            for name, x in result.items()
         }
 
     def block(self, designs: SearchedDesigns, rows: Rows) -> Array:
@@ -154,12 +154,12 @@ def _line(line: LoadLines, load: Load) -> LoadLines:
 
 def over_theta_at(loads: Mapping[str, Load], theta: Array) -> dict[str, Any]:
     """Values and derivatives at crank angles of the loads over them."""
-    found: dict[str, Any] = {}
+    result: dict[str, Any] = {}
     for name, load in loads.items():
         if isinstance(load, OverTheta):
             for key, values in zip((name, f"{name}_by_theta"), load.both(theta.reshape(-1)), strict=True):
-                found[key] = values.reshape(theta.shape)
-    return found
+                result[key] = values.reshape(theta.shape)
+    return result
 
 
 # ---- functions without a derivative ------------------------------------------------------------------
@@ -206,6 +206,6 @@ class Differences(NamedTuple):
         low, high = np.array(self.nodes)[after - 1], np.nextafter(self.nodes, -inf)[after]
         step = np.minimum(STEP, 0.125 * (high - low))
         centre = np.clip(theta, low + 4.0 * step, high - 4.0 * step)
-        found = self.load.value(np.clip(centre + PLACES.reshape(-1, *[1] * theta.ndim) * step, low, high))
+        result = self.load.value(np.clip(centre + PLACES.reshape(-1, *[1] * theta.ndim) * step, low, high))
         powers = ((theta - centre) / step) ** np.arange(8.0).reshape(-1, *[1] * theta.ndim)
-        return (np.tensordot(BY_POWERS, found, axes=1) * powers).sum(axis=0) / step
+        return (np.tensordot(BY_POWERS, result, axes=1) * powers).sum(axis=0) / step

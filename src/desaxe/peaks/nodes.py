@@ -36,8 +36,8 @@ def _class(margin: Array) -> NDArray[np.int16]:
     """The least k that is kept apart with margin >= 4^-k; any for NaN."""
     exponent = (margin.view(np.int64) >> 52).astype(np.int16)  # margin in [2^(e-1023), 2^(e-1022)), or e < 0
     finest = np.minimum(np.maximum((1024 - exponent) >> 1, 0), FINEST)
-    found: NDArray[np.int16] = KEPT_APART[np.searchsorted(KEPT_APART, finest)]
-    return found
+    result: NDArray[np.int16] = KEPT_APART[np.searchsorted(KEPT_APART, finest)]
+    return result
 
 
 @lru_cache(maxsize=1024)

@@ -92,31 +92,31 @@ def peak(
         raise TypeError(f"peak: expected one name, such as 'a_C', got {shown_value(name)}")
     if not isinstance(kind, str) or kind not in KINDS:
         raise ValueError(f"kind = {shown_value(kind)}: it is one of {', '.join(KINDS)}")
-    given = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega, **loads}
+    inputs = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega, **loads}
     ends = None if theta is ONE_TURN else _range(theta, name)
     if sliders is not None:
         check_sliders(sliders)
-        given["alpha"] = None if is_steady(alpha) else alpha
+        inputs["alpha"] = None if is_steady(alpha) else alpha
         whole: dict[str, Any] = sliders.peak(
-            name, kind, ends, {n: v for n, v in given.items() if v is not None}
+            name, kind, ends, {n: v for n, v in inputs.items() if v is not None}
         )
         return whole
     check_inputs("peak", loads, INPUTS_OF_PEAK)
-    check_common(given, branch, threads)
-    _, varying = loads_of(given)
-    sought = sought_of(name, kind, given, varying, branch, accuracy, ends)._replace(threads=threads)
+    check_common(inputs, branch, threads)
+    _, varying = loads_of(inputs)
+    sought = sought_of(name, kind, inputs, varying, branch, accuracy, ends)._replace(threads=threads)
     plan = sought.plan
     if ends is None:
         _range(sought.ends, name)  # the cycle of loads may have too many turns
-    _warn_of_columns(given, plan)
+    _warn_of_columns(inputs, plan)
     if "omega0" in plan.needs and omega0 is None:
-        given["omega0"] = 0.0 if "omega0" not in plan.parameters else None  # which only the status uses
-    arrays = {n: as_array(n, given.get(n), plan.needs, (name,)) for n in sought.numbers}
+        inputs["omega0"] = 0.0 if "omega0" not in plan.parameters else None  # which only the status uses
+    arrays = {n: as_array(n, inputs.get(n), plan.needs, (name,)) for n in sought.numbers}
     shape = broadcast_shape(arrays)
     columns = {n: _flat(a, shape) for n, a in arrays.items()}
     search = search_of(plan, arrays, sought.ends)
-    found = peaks_of_designs(sought, search, columns)
-    return Answer(_shaped(found, shape), partial(units_of_extreme, name), PeakStatus)
+    result = peaks_of_designs(sought, search, columns)
+    return Answer(_shaped(result, shape), partial(units_of_extreme, name), PeakStatus)
 
 
 def _range(theta: Any, name: str) -> tuple[float, float]:
@@ -136,9 +136,9 @@ def _range(theta: Any, name: str) -> tuple[float, float]:
     return low, high
 
 
-def _warn_of_columns(given: Mapping[str, Any], plan: "PeakPlan") -> None:
+def _warn_of_columns(inputs: Mapping[str, Any], plan: "PeakPlan") -> None:
     """A long array of loads and no other array are hardly designs: more likely a load over theta."""
-    shapes = {n: np.shape(getattr(given.get(n), "magnitude", given.get(n, 0.0))) for n in plan.needs}
+    shapes = {n: np.shape(getattr(inputs.get(n), "magnitude", inputs.get(n, 0.0))) for n in plan.needs}
     arrays = {n: shape for n, shape in shapes.items() if shape}
     for name, shape in arrays.items():
         if name in VARIABLE and len(arrays) == 1 and len(shape) == 1 and shape[0] > MANY:
@@ -155,13 +155,13 @@ def _flat(array: Array, shape: tuple[int, ...]) -> Array:
     return np.broadcast_to(array, shape).reshape(-1) if shape else array.reshape(1)
 
 
-def _shaped(found: dict[str, Any], shape: tuple[int, ...]) -> dict[str, Any]:
+def _shaped(result: dict[str, Any], shape: tuple[int, ...]) -> dict[str, Any]:
     """The results in the shape of the designs; plain numbers for one design."""
 
     def shaped(array: NDArray[Any]) -> Any:
         return array.reshape(shape) if shape else array[0].item()
 
-    gradient = {name: shaped(slope) for name, slope in found.pop("gradient").items()}
-    parts = {name: shaped(array) for name, array in found.items()}
+    gradient = {name: shaped(slope) for name, slope in result.pop("gradient").items()}
+    parts = {name: shaped(array) for name, array in result.items()}
     first = {name: parts.pop(name) for name in ("value", "theta", "side")}
     return {**first, "gradient": gradient, "status": parts["status"]}

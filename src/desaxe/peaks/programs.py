@@ -107,8 +107,8 @@ def _whole(search: Search) -> tuple[Program, list[str]]:
         if known in called:
             names.append(called[known])
         else:
-            program, found = _differentiated(program, called[search.name], parameter)
-            names.append(found)
+            program, result = _differentiated(program, called[search.name], parameter)
+            names.append(result)
     if under is not None:
         outputs = *names, *(called[name] for name in motion)
         program = under.added_to(program._replace(outputs=outputs), dict(search.fixed))
@@ -216,9 +216,9 @@ _KEPT: Recent[Any, Any] = Recent(MOST_KEPT)
 
 def compiled(make: Callable[..., T], *key: Any) -> T:
     """`make(*key)`, once a process: several threads that want the same wait for the first."""
-    found: T | None = _KEPT.get((make, *key))
-    if found is None:
+    result: T | None = _KEPT.get((make, *key))
+    if result is None:
         with _LOCK:
-            found = _KEPT.get((make, *key)) or make(*key)
-            _KEPT[make, *key] = found
-    return found
+            result = _KEPT.get((make, *key)) or make(*key)
+            _KEPT[make, *key] = result
+    return result

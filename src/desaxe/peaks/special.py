@@ -67,8 +67,8 @@ class SearchedDesigns(NamedTuple):
         """Values of names by their name, for the designs `rows` at one angle each."""
         inputs: dict[str, Any] = {name: column[rows] for name, column in self.columns.items()}
         given = {"alpha": 0.0, **inputs, **self.loads, "theta": theta}
-        found: dict[str, Any] = values(list(names), given, self.branch)
-        return found
+        result: dict[str, Any] = values(list(names), given, self.branch)
+        return result
 
 
 def are_special(designs: SearchedDesigns) -> NDArray[np.bool_]:
@@ -92,8 +92,8 @@ def _only_rub(designs: SearchedDesigns) -> NDArray[np.bool_]:
     ec, AB, BC = designs.lengths
     steepest = (np.abs(ec) + AB) / BC  # the sine of phi
     mu = designs.columns["mu"]
-    found: NDArray[np.bool_] = (mu * steepest) ** 2 < SURE * (1.0 - steepest**2)
-    return found
+    result: NDArray[np.bool_] = (mu * steepest) ** 2 < SURE * (1.0 - steepest**2)
+    return result
 
 
 def rubbing_nodes(designs: SearchedDesigns, turns: Array) -> Array:
@@ -166,16 +166,16 @@ def _ends_of_balance(lengths: list[Array], mu: Array) -> Array:
 def _limit_angles(designs: SearchedDesigns) -> Array:
     """The angles at which designs stop being feasible, or stall, in the range or near it; NaN elsewhere."""
     (low, high), columns, lengths = designs.theta, designs.columns, designs.lengths
-    found = np.empty((designs.size, 0))
+    result = np.empty((designs.size, 0))
     if lengths:
         angles = limit_angles(lengths)
         whole = angles[:, 1:2] - angles[:, 0:1] == TURN
-        found = repeated(np.where(whole, np.nan, angles), low, high)
+        result = repeated(np.where(whole, np.nan, angles), low, high)
     if "alpha" in columns and "omega0" in columns:
         stops = _stall(columns["omega0"], columns["alpha"])
         near = (stops > low - REACH) & (stops < high + REACH)
-        found = np.append(found, np.where(near, stops, np.nan)[:, None], axis=1)
-    return found
+        result = np.append(result, np.where(near, stops, np.nan)[:, None], axis=1)
+    return result
 
 
 # ---- what the extrema mean ------------------------------------------------------------------------
@@ -196,7 +196,7 @@ def complete(
     designs: SearchedDesigns,
     nodes: Array,
     ends: list[tuple[int, float]],
-    found: SearchResult,
+    result: SearchResult,
     parameters: tuple[str, ...],
     kinks: Array | None = None,
     jumps: Array | None = None,
@@ -212,27 +212,27 @@ def complete(
     rows = np.arange(designs.size)
     swept = designs.values((name, "status"), np.repeat(rows, nodes.shape[1]), nodes.reshape(-1))
     value, status = (swept[n].reshape(nodes.shape) for n in (name, "status"))
-    jams, turns = _at_force_limits(name, kind, designs, nodes, swept, found, jumps)
-    found.status[:] = _status(status)
-    _mark_limits(kind, found, value, nodes, ends)
-    turns |= turns_over(designs, found, nodes, value, kinks)
-    fixed = _at_change_point(designs, found) & ~turns
+    jams, turns = _at_force_limits(name, kind, designs, nodes, swept, result, jumps)
+    result.status[:] = _status(status)
+    _mark_limits(kind, result, value, nodes, ends)
+    turns |= turns_over(designs, result, nodes, value, kinks)
+    fixed = _at_change_point(designs, result) & ~turns
     turns |= fixed
-    found.value[jams] = np.copysign(np.inf, found.value[jams])
+    result.value[jams] = np.copysign(np.inf, result.value[jams])
     # Without a value at any angle but a change point, which is all that a stalling crank reaches, too.
-    found.status[(turns | np.isnan(found.value)) & (found.status == 0)] = 2
-    usable = np.isin(found.status, USABLE) & ~turns & np.isfinite(found.value)
+    result.status[(turns | np.isnan(result.value)) & (result.status == 0)] = 2
+    usable = np.isin(result.status, USABLE) & ~turns & np.isfinite(result.value)
     moved_by = np.array([p in LENGTHS for p in parameters], np.bool_)[:, None]  # what moves a change point
-    return usable | (fixed & np.isfinite(found.value) & ~moved_by)
+    return usable | (fixed & np.isfinite(result.value) & ~moved_by)
 
 
-def _at_change_point(designs: SearchedDesigns, found: SearchResult) -> NDArray[np.bool_]:
+def _at_change_point(designs: SearchedDesigns, result: SearchResult) -> NDArray[np.bool_]:
     """True where a crank lies across its guide at a change point, in line with the rod: rates jump there."""
     if not designs.lengths:
         return np.zeros(designs.size, bool)
     upper, lower = closed_form(LIMITS, ("upper", "lower")).arrays(*designs.lengths)
-    margin = np.where(np.sin(found.theta) > 0.0, upper, lower)
-    across: NDArray[np.bool_] = (margin == 0.0) & (np.abs(np.cos(found.theta)) < ACROSS)
+    margin = np.where(np.sin(result.theta) > 0.0, upper, lower)
+    across: NDArray[np.bool_] = (margin == 0.0) & (np.abs(np.cos(result.theta)) < ACROSS)
     return across
 
 
@@ -248,8 +248,8 @@ def stays_zero(
     closed = turns == round(turns) and not np.any(designs.columns.get("alpha", 0.0))
     inside = (theta != low) & (theta != high) | closed
     at_kink = (np.abs(kinks - theta[:, None]) <= AT_KINK).any(axis=1)
-    found: NDArray[np.bool_] = inside & ~at_kink & (np.abs(value) < TOUCHES * np.abs(slope))
-    return found
+    result: NDArray[np.bool_] = inside & ~at_kink & (np.abs(value) < TOUCHES * np.abs(slope))
+    return result
 
 
 def score(kind: str, value: Array) -> Array:
@@ -264,7 +264,7 @@ def _at_force_limits(
     designs: SearchedDesigns,
     nodes: Array,
     swept: dict[str, Any],
-    found: SearchResult,
+    result: SearchResult,
     jumps: Array | None,
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Let the last angles with exactly one force balance take part in the search.
@@ -290,10 +290,10 @@ def _at_force_limits(
     if jumps is not None:
         values = np.where((np.abs(jumps[rows] - inside[:, None]) <= AT_KINK).any(axis=1), np.nan, values)
     for row, theta, value, code in zip(rows, inside, values, codes, strict=True):
-        best = value == value and score(kind, value) >= score(kind, found.value[row])
+        best = value == value and score(kind, value) >= score(kind, result.value[row])
         if best:
-            found.value[row], found.theta[row] = value, theta
-        if best or abs(found.theta[row] - theta) <= AT_KINK:  # a node may be nearer, where rounding differs
+            result.value[row], result.theta[row] = value, theta
+        if best or abs(result.theta[row] - theta) <= AT_KINK:  # a node may be nearer, where rounding differs
             jams[row], turns[row] = code == JAMS, True
     return jams, turns
 
@@ -301,14 +301,14 @@ def _at_force_limits(
 def _status(status: NDArray[np.int8]) -> NDArray[np.int8]:
     """The status of a design: that of friction at any angle, else 0 if one angle is ok, else the first."""
     usable = ((status == 0) | (status == 2)).any(axis=1)
-    found = np.where(usable, np.int8(0), status[:, 0]).astype(np.int8)
+    result = np.where(usable, np.int8(0), status[:, 0]).astype(np.int8)
     for code in (TWO_BALANCES, JAMS):
-        found[(status == code).any(axis=1)] = code
-    return found
+        result[(status == code).any(axis=1)] = code
+    return result
 
 
 def _mark_limits(
-    kind: str, found: SearchResult, value: Array, nodes: Array, ends: list[tuple[int, float]]
+    kind: str, result: SearchResult, value: Array, nodes: Array, ends: list[tuple[int, float]]
 ) -> None:
     """An extremum at a limit angle has status 2; what has no bound there is infinite."""
     for row, end in ends:
@@ -322,13 +322,13 @@ def _mark_limits(
         reference = min(FARTHER, 0.5 * min(others, default=np.inf))
         bounded = not _grows(nodes[row, usable], value[row, usable], end, value[row, near], reference)
         # The search may have stopped beyond `near`, where only more digits show that it is infeasible.
-        at_end = abs(found.theta[row] - end) <= max(abs(nodes[row, near] - end), 0.5 * GRADED[-1])
-        grows = not bounded and score(kind, value[row, near]) >= score(kind, found.value[row])
+        at_end = abs(result.theta[row] - end) <= max(abs(nodes[row, near] - end), 0.5 * GRADED[-1])
+        grows = not bounded and score(kind, value[row, near]) >= score(kind, result.value[row])
         if at_end or grows:
-            found.status[row] = 2
-            found.theta[row] = end
+            result.status[row] = 2
+            result.theta[row] = end
             if not bounded:
-                found.value[row] = np.copysign(np.inf, value[row, near])
+                result.value[row] = np.copysign(np.inf, value[row, near])
 
 
 def _grows(nodes: Array, value: Array, end: float, last: float, reference: float) -> bool:
@@ -339,7 +339,7 @@ def _grows(nodes: Array, value: Array, end: float, last: float, reference: float
 
 
 def turns_over(
-    designs: SearchedDesigns, found: SearchResult, nodes: Array, value: Array, kinks: Array | None = None
+    designs: SearchedDesigns, result: SearchResult, nodes: Array, value: Array, kinks: Array | None = None
 ) -> NDArray[np.bool_]:
     """Mask of the extrema at a kink or jump whose angle moves with the design, but for those of loads."""
     if not designs.rubs:
@@ -350,8 +350,8 @@ def turns_over(
     steep = np.sort(np.where(np.isfinite(steep), steep, np.inf), axis=1)
     usual = steep[np.arange(len(steep)), np.isfinite(steep).sum(axis=1) // 2]
     turns: NDArray[np.bool_] = (
-        (np.abs(found.slope) > SMOOTH * usual) & (found.theta != low) & (found.theta != high)
+        (np.abs(result.slope) > SMOOTH * usual) & (result.theta != low) & (result.theta != high)
     )
     if kinks is not None:
-        turns &= ~(np.abs(kinks - found.theta[:, None]) <= AT_KINK).any(axis=1)
+        turns &= ~(np.abs(kinks - result.theta[:, None]) <= AT_KINK).any(axis=1)
     return turns

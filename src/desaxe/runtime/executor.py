@@ -111,10 +111,10 @@ def is_ready(key: KernelKey) -> bool:
 
 def kernel_for(key: KernelKey) -> CompiledKernel:
     """The kernel of a key, compiled now unless it is kept."""
-    found = _KEPT.get(key)
-    if found is None:
-        found = _KEPT[key] = finished(lambda: _compiled(key))
-    return found
+    result = _KEPT.get(key)
+    if result is None:
+        result = _KEPT[key] = finished(lambda: _compiled(key))
+    return result
 
 
 def _compiled(key: KernelKey) -> CompiledKernel:

@@ -40,7 +40,7 @@ class KernelKey(NamedTuple):
 
 
 def key_of(
-    wanted: Request,
+    requested: Request,
     scalars: Mapping[str, float],
     columns: Mapping[str, Any],
     axis_of: Mapping[str, int],
@@ -49,59 +49,59 @@ def key_of(
 ) -> KernelKey:
     """The key of a request whose scalars and columns are known; `keys` are those of the request so far."""
     theta = scalars.get("theta", 0.0)
-    check_angle(wanted.accuracy, theta)
+    check_angle(requested.accuracy, theta)
     zeros = tuple([n for n, x in scalars.items() if type(x) is float and x == 0.0 and n in STRUCTURAL_ZEROS])
     kind = (
         tuple(axis_of.items()),
         axes,
         zeros,
         constants().limit < abs(theta),
-        _is_wide(wanted, scalars, columns, axis_of),
+        _is_wide(requested, scalars, columns, axis_of),
     )
     key = None if keys is None else keys.get(kind)
     if key is None:
-        key = _new_key(wanted, *kind)
+        key = _new_key(requested, *kind)
         if keys is not None:
             keys[kind] = key
     return key
 
 
 def _new_key(
-    wanted: Request,
+    requested: Request,
     axis_of: tuple[tuple[str, int], ...],
     axes: int,
     zeros: tuple[str, ...],
     far: bool,
     wide: bool,
 ) -> KernelKey:
-    fixed, form = (*wanted.fixed, *((name, 0.0) for name in zeros)), wanted.form
-    if wide and plain_form(wanted.names, form, fixed) is not None:
+    fixed, form = (*requested.fixed, *((name, 0.0) for name in zeros)), requested.form
+    if wide and plain_form(requested.names, form, fixed) is not None:
         form = form._replace(wide_margins=True)
-    return KernelKey(wanted.names, form, fixed, tuple(sorted(axis_of)), axes, wanted.accuracy, far)
+    return KernelKey(requested.names, form, fixed, tuple(sorted(axis_of)), axes, requested.accuracy, far)
 
 
 def _is_wide(
-    wanted: Request, scalars: Mapping[str, float], columns: Mapping[str, Any], axis_of: Mapping[str, int]
+    requested: Request, scalars: Mapping[str, float], columns: Mapping[str, Any], axis_of: Mapping[str, int]
 ) -> bool:
     """True if all designs have wide margins, and they are so few that testing them in advance pays."""
     lengths = [scalars.get(name) for name in LENGTHS]
-    if wanted.accuracy == "extended":
+    if requested.accuracy == "extended":
         return False
     if None not in lengths:
-        return bool(of_numbers(wanted.form)(*lengths)[0])
+        return bool(of_numbers(requested.form)(*lengths)[0])
     several = [columns.get(name, scalars.get(name)) for name in LENGTHS]
     if any(length is None for length in several):
         return False
     count = sum(columns[name].size for name in LENGTHS if name in columns)
     points = prod({axis: columns[name].size for name, axis in axis_of.items()}.values())
-    return count * ASKED_AHEAD <= points and all_have_wide_margins(wanted.form, *several)
+    return count * ASKED_AHEAD <= points and all_have_wide_margins(requested.form, *several)
 
 
 def _is_seen(program: Program, angle: str) -> bool:
     """True if an invalid value may reach other lines than sine and cosine, which turn it into NaN."""
     types = {line.name: line.type for line in program.lines}
-    told = angle in program.outputs or any(types.get(name) == "i64" for name in program.outputs)
-    return told or any(angle in line.args and line.op not in ("sin", "cos") for line in program.lines)
+    message = angle in program.outputs or any(types.get(name) == "i64" for name in program.outputs)
+    return message or any(angle in line.args and line.op not in ("sin", "cos") for line in program.lines)
 
 
 def has_near_limit(key: KernelKey) -> bool:

@@ -37,13 +37,13 @@ _INHERITED: "list[ThreadPoolExecutor]" = []  # in a forked child: pools without 
 
 def pool(threads: int) -> "ThreadPoolExecutor":
     """The pool of this number of threads, created on first use."""
-    found = _POOLS.get(threads)
-    if found is None:
+    result = _POOLS.get(threads)
+    if result is None:
         with IMPORTS:
             from concurrent.futures import ThreadPoolExecutor  # logging comes with it
 
-        found = _POOLS.setdefault(threads, ThreadPoolExecutor(threads, thread_name_prefix="desaxe"))
-    return found
+        result = _POOLS.setdefault(threads, ThreadPoolExecutor(threads, thread_name_prefix="desaxe"))
+    return result
 
 
 def _forget_pools() -> None:

@@ -40,11 +40,11 @@ def scalar(name: str, value: Any, unit: str, least: float = -inf, limit: str = "
     return read(Input(name, unit, "", least, limit), value, "simulate", limit)
 
 
-def design_values(given: Mapping[str, Any]) -> dict[str, float]:
+def design_values(inputs: Mapping[str, Any]) -> dict[str, float]:
     """The lengths, masses and constant loads of one design; those that are not given are 0."""
     values = {}
     for name in (*LENGTHS, *LOADS):
-        value = given.get(name)
+        value = inputs.get(name)
         if value is None and name in CENTRES:
             continue
         if callable(value) and name not in ("F_X", "F_Y"):
@@ -65,13 +65,13 @@ def one(name: str, value: Any) -> float:
 
 def check_names(names: Any, of_design: bool = True) -> tuple[str, ...]:
     """Check the requested names: of a design, quantities or sensitivities of a given state."""
-    wanted = (names,) if isinstance(names, str) else several(names)
-    for name in wanted:
+    requested = (names,) if isinstance(names, str) else several(names)
+    for name in requested:
         if name in OWN - {"omega"}:
             raise ValueError(f"names: {name!r} is always among the results")
         if of_design:
             quantity(name, state=True)
-    return wanted
+    return requested
 
 
 def follows_the_slider(torque: Any) -> bool:
@@ -198,28 +198,30 @@ def read_until(until: Any) -> tuple[float, ...]:
     return tuple(scalar("until", angle, "rad") for angle in several)
 
 
-def read_wrt(wrt: Any, given: Mapping[str, Any]) -> tuple[str, ...]:
+def read_wrt(wrt: Any, inputs: Mapping[str, Any]) -> tuple[str, ...]:
     """The parameters of the sensitivities of a motion: numbers of the call, whose loads have derivatives."""
-    wanted = (wrt,) if isinstance(wrt, str) else several(wrt)
-    loads = {n: a for n, a in given.items() if isinstance(a, OfMotion)}
+    requested = (wrt,) if isinstance(wrt, str) else several(wrt)
+    loads = {n: a for n, a in inputs.items() if isinstance(a, OfMotion)}
     own = [f"{force}.{number}" for force, load in loads.items() for number in load.numbers]
-    for name in wanted:
+    for name in requested:
         if name in own:
             continue
-        if name not in given:
-            known = [*given, *own]
+        if name not in inputs:
+            known = [*inputs, *own]
             asked = did_you_mean(name, known) if isinstance(name, str) else ""
             raise ValueError(f"wrt: no parameter {shown(name)}; {asked}there are {', '.join(known)}")
-        if callable(given[name]):
-            raise ValueError(f"wrt: {name} = {shown(given[name])} is no number, there is no derivative by it")
+        if callable(inputs[name]):
+            raise ValueError(
+                f"wrt: {name} = {shown(inputs[name])} is no number, there is no derivative by it"
+            )
     for name in ("F_X", "F_Y"):
-        load = given[name]
-        if wanted and callable(load) and not (isinstance(load, LoadOverMotion) and load.has_slope):
+        load = inputs[name]
+        if requested and callable(load) and not (isinstance(load, LoadOverMotion) and load.has_slope):
             raise TypeError(
                 f"{name} = {shown(load)}: wrt= needs its derivative: give a table, or "
                 "desaxe.over_theta(f, derivative=...)"
             )
-    return wanted
+    return requested
 
 
 def read_rtol(rtol: Any) -> float:

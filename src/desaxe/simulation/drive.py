@@ -196,8 +196,8 @@ class BoundedCurve(AngleCurve):
 
     def slopes(self, t: Any, theta: Any, omega: Any, value: Any = None) -> Slopes:
         """The function and its slope, beyond the nodes as at them."""
-        found = super().slopes(t, np.clip(theta, self.low, self.high), omega)
-        return found._replace(value=self.at(t, theta, omega))
+        result = super().slopes(t, np.clip(theta, self.low, self.high), omega)
+        return result._replace(value=self.at(t, theta, omega))
 
     def ahead(self, theta: float, omega: float, direction: float, growing: float = 1.0) -> Curve:
         """Another piece, by another node."""
@@ -241,9 +241,9 @@ class PositionCurve(Curve):
     def ahead(self, theta: float, omega: float, direction: float, growing: float = 1.0) -> Curve:
         """The piece ahead of an angle, for the way in which the slider goes there."""
         place, slope = self.along(theta + copysign(AHEAD_OF_Y, direction))
-        found = PositionCurve(self.load, int(self.load.piece(float(place), float(slope * direction))))
-        found.design, found.zero = self.design, self.zero
-        return found
+        result = PositionCurve(self.load, int(self.load.piece(float(place), float(slope * direction))))
+        result.design, result.zero = self.design, self.zero
+        return result
 
     def kinks(self, lengths: tuple[float, ...], branch: int) -> list[tuple[float, float]]:
         """The angles at the table's positions, and the dead centres where another table holds behind them."""
@@ -282,12 +282,12 @@ class FunctionCurve(Curve):
         if not np.ndim(omega):
             return self._one({name: float(value) for name, value in now.items()})
         columns = [now[argument].tolist() for argument in self.arguments]
-        check, function, found = self.deadline.check, self.function, []
+        check, function, result = self.deadline.check, self.function, []
         for row in zip(*columns, strict=True):
             check()
-            found.append(function(*row))
-        if all(type(value) is float and isfinite(value) for value in found):
-            return np.array(found)
+            result.append(function(*row))
+        if all(type(value) is float and isfinite(value) for value in result):
+            return np.array(result)
         rows = zip(*(now[name].tolist() for name in now), strict=True)
         return np.array([self._one(dict(zip(now, row, strict=True))) for row in rows])
 

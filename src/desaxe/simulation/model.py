@@ -97,8 +97,8 @@ class Model(SliderDesign):
             if "ec" not in self._design:
                 fixed["ec"] = 0.0
             call = self._calls[names] = _function(names, (*state, *self._design), tuple(fixed.items()))
-        found: tuple[Any, ...] = call(*state.values(), *self._design.values())
-        return found
+        result: tuple[Any, ...] = call(*state.values(), *self._design.values())
+        return result
 
     def family(self) -> DesignFamily:
         """The family of designs that share its kernels of the compiled loops."""
@@ -115,8 +115,8 @@ class Model(SliderDesign):
 
     def contact(self, theta: Any, omega: Any, F_X: Any, F_Y: Any) -> tuple[Any, Any, Any, Any]:
         """The normal force without friction at alpha = 0, its slopes by alpha and omega, branch tan(phi)."""
-        found = self._values(CONTACT, theta=theta, omega=omega, F_X=F_X, F_Y=F_Y)
-        return found[0], found[1], found[2], self.branch * np.tan(found[3])
+        result = self._values(CONTACT, theta=theta, omega=omega, F_X=F_X, F_Y=F_Y)
+        return result[0], result[1], result[2], self.branch * np.tan(result[3])
 
     @property
     def lengths(self) -> tuple[float, ...]:

@@ -30,12 +30,12 @@ class Ask(NamedTuple):
     until: tuple[float, ...]
 
 
-def one_motion(ask: Ask, given: Mapping[str, Any], starts: Mapping[str, Any], times: Any) -> Simulation:
+def one_motion(ask: Ask, inputs: Mapping[str, Any], starts: Mapping[str, Any], times: Any) -> Simulation:
     """The motion of one design."""
     torque = starts["torque"]
     start = scalar("theta0", starts["theta0"], "rad"), scalar("omega_start", starts["omega_start"], "rad/s")
-    drive = drive_of(torque, given["F_X"], given["F_Y"], ask.deadline, ask.derivative)
-    values = design_values(given)
+    drive = drive_of(torque, inputs["F_X"], inputs["F_Y"], ask.deadline, ask.derivative)
+    values = design_values(inputs)
     model = model_of(values, ask.branch, start[0], drive)
     known: dict[str, Any] = {**values, "branch": ask.branch}
     kept = zip(FORCES, drive[1:], strict=True)

@@ -70,16 +70,16 @@ class Simulation(Answer):
         return motion(self, ax=ax)
 
 
-def _units(found: Mapping[str, Any]) -> dict[str, Any]:
+def _units(result: Mapping[str, Any]) -> dict[str, Any]:
     """The units of a motion; of a derivative by a parameter a quotient."""
     units: dict[str, Any] = {}
-    for key in found:
+    for key in result:
         base, _, parameter = key.partition("_wrt_")
         if base in MOTION and parameter:
             units[key] = unit_of(base, parameter)
         elif key not in WORDLESS:
             units[key] = unit_of(key)
-    by: Mapping[str, Any] = next((event.wrt for event in found.get("events", ()) if event.wrt), {})
+    by: Mapping[str, Any] = next((event.wrt for event in result.get("events", ()) if event.wrt), {})
     return {**units, "events": {**units_of(("t", "theta", "omega")), "wrt": slopes_of("t", by)}}
 
 

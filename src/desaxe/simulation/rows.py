@@ -156,7 +156,7 @@ def _one_by_one(
     if not rows:
         return
     with progress_bar(unit="designs") as watch:
-        told = Portions(len(rows), "motions", watch)
+        message = Portions(len(rows), "motions", watch)
         for row in rows:
             design: dict[str, Any] = {
                 **{name: values[row].item() for name, values in flat.items()},
@@ -168,7 +168,7 @@ def _one_by_one(
             ask.deadline.check()
             begin = {name: design[name] for name in starts}
             answers.put(row, one_motion(ask, inputs, begin, answers.t))
-            told.add(1)
+            message.add(1)
 
 
 def _together(
@@ -201,12 +201,12 @@ def _together(
         laws.law[:, state.WAITS] = 1.0
     how = np.array([ask.rtol, ask.t_end, ask.max_steps], float)
     histories, numbers = np.empty((left.size, len(MOTION), answers.t.size)), np.full((answers.size, 4), nan)
-    status, found = answers.status[left], np.full((left.size, 4), nan)
+    status, result = answers.status[left], np.full((left.size, 4), nan)
     known = laws.law, laws.data, kinks_of(flat, ask.branch, ask.until), laws.sheets
-    _run(known, laws.knots, answers.t, how, (histories, status, found), threads, ask.deadline)
+    _run(known, laws.knots, answers.t, how, (histories, status, result), threads, ask.deadline)
     for k, name in enumerate(MOTION):
         answers.histories[name][left] = histories[:, k]
-    answers.status[left], numbers[left] = status, found
+    answers.status[left], numbers[left] = status, result
     answers.told(left[status != NO_START], numbers)
 
 
@@ -243,7 +243,7 @@ def _marks(angles: Array, period: float, status: int) -> Array:
 
 
 def arrays_of(
-    given: Mapping[str, Any], starts: Mapping[str, Any], motor: Mapping[str, Any] = MappingProxyType({})
+    inputs: Mapping[str, Any], starts: Mapping[str, Any], motor: Mapping[str, Any] = MappingProxyType({})
 ) -> tuple[dict[str, Array], dict[str, Array], tuple[int, ...]]:
     """The inputs that are no functions: as arrays, as rows with a value for each design; their shape.
 
@@ -252,7 +252,7 @@ def arrays_of(
     arrays = {
         name: as_array(name, 0.0 if value is None and name in LOADS else value, LENGTHS, ("simulate",))
         for name in (*LENGTHS, *LOADS)
-        if not callable(value := given.get(name)) and (value is not None or name not in CENTRES)
+        if not callable(value := inputs.get(name)) and (value is not None or name not in CENTRES)
     }
     arrays |= {n: number_or_array(STARTS[n], value) for n, value in starts.items() if not callable(value)}
     arrays |= {name: np.asarray(value, float) for name, value in motor.items()}
@@ -314,11 +314,11 @@ def _run(
 
     size = len(known[0])
     with progress_bar(unit="designs") if size > LARGE else nullcontext() as watch:
-        told = Portions(size, "motions", watch)
+        message = Portions(size, "motions", watch)
 
         def part(a: int, b: int) -> None:
             block(a, b)
-            told.add(b - a)
+            message.add(b - a)
 
         stopped_early(lambda: run_parts(part, size, threads, 1, PART), stop, deadline)
 

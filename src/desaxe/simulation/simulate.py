@@ -110,27 +110,27 @@ def simulate(
 
     See docs/choose.md: which call for which question.
     """
-    given = {
+    inputs = {
         "AB": AB, "BC": BC, "ec": ec, "m_crank": m_crank, "m_rod": m_rod, "m_slider": m_slider,
         "I_crank": I_crank, "I_rod": I_rod, "r_crank": r_crank, "r_rod": r_rod, "F_X": F_X, "F_Y": F_Y,
         "g_X": g_X, "g_Y": g_Y, "mu": mu,
     }  # fmt: skip
-    given = with_labelled(given)
+    inputs = with_labelled(inputs)
     check_common({}, branch, threads)
     check_sliders(sliders)
-    wanted = check_names(names, sliders is None)
+    requested = check_names(names, sliders is None)
     max_steps = whole_number("max_steps", max_steps, 1, 10**9)
     deadline = Deadline("simulate", timeout)
     end = scalar("t_end", t_end, "s", TINY, "a finite time > 0")
     instants, angles, rtol = read_times(times, end), read_until(until), read_rtol(rtol)
     starts = {"theta0": theta0, "omega_start": omega_start, "torque": torque}
-    by = read_wrt(wrt, {**given, **starts, **({} if sliders is None else sliders.numbers())})
+    by = read_wrt(wrt, {**inputs, **starts, **({} if sliders is None else sliders.numbers())})
     slopes = torque_derivative(torque, derivative) if by else None
-    ask = Ask(end, wanted, int(branch), rtol, max_steps, deadline, by, slopes, angles)
+    ask = Ask(end, requested, int(branch), rtol, max_steps, deadline, by, slopes, angles)
     if sliders is not None:
-        motion: Simulation = sliders.motion(ask, given, starts, instants)
+        motion: Simulation = sliders.motion(ask, inputs, starts, instants)
         return motion
     motors = torque.numbers.values() if isinstance(torque, Motor) else ()
-    if any(map(is_array, (*given.values(), *starts.values(), *motors))):
-        return simulate_rows(ask, given, starts, instants, threads)
-    return one_motion(ask, given, starts, instants)
+    if any(map(is_array, (*inputs.values(), *starts.values(), *motors))):
+        return simulate_rows(ask, inputs, starts, instants, threads)
+    return one_motion(ask, inputs, starts, instants)

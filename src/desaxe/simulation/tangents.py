@@ -74,13 +74,13 @@ class Tangents:
         known = self.still if still and self.still else self.inputs
         inputs = {**known, "theta": theta, "omega": omega, "alpha": alpha, "mu": mu}
         parts = {name: name.partition(".") for name in names}
-        found = evaluate(list(dict.fromkeys(head for head, *_ in parts.values())), **inputs)
+        result = evaluate(list(dict.fromkeys(head for head, *_ in parts.values())), **inputs)
         for name, (head, _, number) in parts.items():
             if number:  # by a number of a load: that by the load times the load's own
                 load = known[head.rpartition("_wrt_")[2]]
                 by = load.by_at(partial(evaluate, **inputs), theta, omega) if callable(load) else {}
-                found[name] = found[head] * by.get(number, 0.0)
-        return {name: np.broadcast_to(found[name], np.shape(theta)) for name in names}
+                result[name] = result[head] * by.get(number, 0.0)
+        return {name: np.broadcast_to(result[name], np.shape(theta)) for name in names}
 
     def _names(self, name: str, *state: str) -> list[str]:
         """A quantity and its derivatives by these variables of the state and by the inputs."""

@@ -86,8 +86,8 @@ def _reason(value: Any, codes: Any) -> str:
         return ""
     if not getattr(value, "shape", ()):
         return f": {codes(int(value)).words}" if value else ""
-    told = [f"{code}: {codes(code).words}" for code in sorted({*value.reshape(-1).tolist()} - {0})]
-    return f" ({'; '.join(told)})" if told else ""
+    message = [f"{code}: {codes(code).words}" for code in sorted({*value.reshape(-1).tolist()} - {0})]
+    return f" ({'; '.join(message)})" if message else ""
 
 
 def text_of(value: Any, unit: Any = "") -> str:
@@ -115,8 +115,8 @@ def _mapping(mapping: Mapping[Any, Any], units: Sequence[Any]) -> str:
     """A mapping in one line; a unit that all of it has stands behind it."""
     one = units[0] if units and isinstance(units[0], str) and len({*map(str, units)}) == 1 else ""
     parts = zip(mapping.items(), units, strict=True)
-    told = ", ".join(f"{name}: {text_of(part, '' if one else unit)}" for (name, part), unit in parts)
-    return with_unit(f"{{{told}}}", one)
+    message = ", ".join(f"{name}: {text_of(part, '' if one else unit)}" for (name, part), unit in parts)
+    return with_unit(f"{{{message}}}", one)
 
 
 def _array(array: Any, unit: Any) -> str:

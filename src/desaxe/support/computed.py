@@ -19,5 +19,5 @@ class computed_once(Generic[T]):
     def __get__(self, instance: Any, owner: type) -> T:
         if instance is None:
             return self  # type: ignore[return-value]  # for whoever reads its docstring
-        found: T = instance.__dict__.setdefault(self.function.__name__, self.function(instance))
-        return found
+        result: T = instance.__dict__.setdefault(self.function.__name__, self.function(instance))
+        return result

@@ -95,10 +95,10 @@ def require_space(folder: Path, size: int) -> None:
 def kind_of(path: Path) -> str:
     """The kind of a path that is no regular file, such as "folder"; empty for a file or no file."""
     try:
-        found = stat.S_IFMT(path.stat().st_mode)
+        result = stat.S_IFMT(path.stat().st_mode)
     except (FileNotFoundError, NotADirectoryError):
         return ""
-    return "" if found == stat.S_IFREG else _KINDS.get(found, "not a regular file")
+    return "" if result == stat.S_IFREG else _KINDS.get(result, "not a regular file")
 
 
 @contextmanager

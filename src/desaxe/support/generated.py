@@ -20,8 +20,8 @@ class Generated:
 
     def stale(self) -> list[str]:
         """The names of those that are missing, have another text or should not be there."""
-        wanted = {name: None if text is None else text.encode() for name, text in self.texts.items()}
-        return [name for name, content in wanted.items() if self.there(name) != content]
+        requested = {name: None if text is None else text.encode() for name, text in self.texts.items()}
+        return [name for name, content in requested.items() if self.there(name) != content]
 
     def diff(self) -> Iterator[str]:
         """The lines in which those that are there differ."""

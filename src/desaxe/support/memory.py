@@ -53,8 +53,8 @@ def require(size: float, what: str) -> None:
         return
     free = available()
     if size > free:
-        told = f"{what} takes {size_text(size)} and {size_text(free)} are free"
-        raise MemoryError(f"{told}: ask for fewer points or names, or for a reduction (reduce=)")
+        message = f"{what} takes {size_text(size)} and {size_text(free)} are free"
+        raise MemoryError(f"{message}: ask for fewer points or names, or for a reduction (reduce=)")
 
 
 def available() -> float:

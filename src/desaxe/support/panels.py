@@ -92,8 +92,8 @@ class Panels:
         """A function that returns values at places within the range, of each design at its own."""
         edges = self._rows(self.edges)
         places = np.reshape(x, (len(edges), -1))
-        found = [np.searchsorted(e[1:], p, side="right") for e, p in zip(edges, places, strict=True)]
-        row, panel = np.arange(len(edges))[:, None], np.minimum(np.array(found), edges.shape[1] - 2)
+        result = [np.searchsorted(e[1:], p, side="right") for e, p in zip(edges, places, strict=True)]
+        row, panel = np.arange(len(edges))[:, None], np.minimum(np.array(result), edges.shape[1] - 2)
         middle, half = self._shape(row, panel)
         local = np.clip((places - middle) / np.where(half > 0.0, half, 1.0), -1.0, 1.0)
         share = _shares(local)
@@ -109,14 +109,14 @@ class Panels:
         sampled, places = np.sign(self._rows(self.samples(values))), self._rows(self.places)
         sampled[sampled == 0.0] = 1.0
         row, at = np.nonzero(np.diff(sampled, axis=1))
-        found = places[row, at].copy()
+        result = places[row, at].copy()
         panel, number = np.divmod(at, SAMPLES.size)
         inside = number < SAMPLES.size - 1  # else between two panels
         rows, panels, number = row[inside], panel[inside], number[inside]
         middle, half = self._shape(rows, panels)
         series = self._coefficients(values)[rows, panels]
-        found[inside] = middle + half * _root(series, SAMPLES[number], SAMPLES[number + 1])
-        every = padded(row, found, len(places), places[:, 0])
+        result[inside] = middle + half * _root(series, SAMPLES[number], SAMPLES[number + 1])
+        every = padded(row, result, len(places), places[:, 0])
         return every.reshape(*self.edges.shape[:-1], -1)
 
     def extreme(self, values: Array, sign: float) -> tuple[Any, Any, Any]:
@@ -178,9 +178,9 @@ def padded(row: Array, values: Array, count: int, filler: Array) -> Array:
     sizes = np.bincount(row, minlength=count)
     order = np.argsort(row, kind="stable")
     starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
-    found = np.repeat(filler[:, None], sizes.max(initial=0), axis=1)
-    found[row[order], np.arange(len(row)) - starts[row[order]]] = values[order]
-    return found
+    result = np.repeat(filler[:, None], sizes.max(initial=0), axis=1)
+    result[row[order], np.arange(len(row)) - starts[row[order]]] = values[order]
+    return result
 
 
 def _series(coefficients: Array, x: Array) -> Array:
@@ -200,13 +200,13 @@ def _root(series: Array, low: Array, high: Array) -> Array:
 
 def _shares(x: Array) -> Array:
     """The weight of each node, along the first axis, in the value of a polynomial at x: barycentric."""
-    found = np.empty((NODES, *x.shape))
-    for share, node, weight in zip(found, NODE, BARYCENTRIC, strict=True):
+    result = np.empty((NODES, *x.shape))
+    for share, node, weight in zip(result, NODE, BARYCENTRIC, strict=True):
         np.subtract(x, node, out=share)
         share[share == 0.0] = TINY
         np.divide(weight, share, out=share)
-    found /= found.sum(0)
-    return found
+    result /= result.sum(0)
+    return result
 
 
 def resolved(

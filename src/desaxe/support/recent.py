@@ -23,11 +23,11 @@ class Recent(Generic[Key, Value]):
 
     def get(self, key: Key) -> Value | None:
         """The value of a key, now the most recently used; None if absent."""
-        found = self._values.get(key)
-        if found is not None:
+        result = self._values.get(key)
+        if result is not None:
             with suppress(KeyError):  # another thread has just put it out
                 self._values.move_to_end(key)
-        return found
+        return result
 
     def __setitem__(self, key: Key, value: Value) -> None:
         self._values[key] = value

@@ -38,9 +38,9 @@ def with_unit(number: str, unit: str) -> str:
     return f"{number} {printed(unit)}".rstrip()
 
 
-def in_brief(found: list[str], most: int = 30) -> str:
+def in_brief(result: list[str], most: int = 30) -> str:
     """The first lines of some differences, as text, and how many lines are left out."""
-    lines = "".join(found).splitlines(True)
+    lines = "".join(result).splitlines(True)
     rest = len(lines) - most
-    more = f"... and {rest} more lines in {len(found)} files\n" if rest > 0 else ""
+    more = f"... and {rest} more lines in {len(result)} files\n" if rest > 0 else ""
     return "".join(lines[:most]) + more

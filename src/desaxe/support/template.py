@@ -16,12 +16,12 @@ def file_text(package: str, *path: str) -> str:
 def filled(text: str, **values: str | Sequence[str]) -> str:
     """A text with values at its places; a place with a line of its own takes a list of lines, too."""
 
-    def value(found: re.Match[str]) -> str:
-        indent, alone, inside = found.groups()
-        given = values[alone or inside]
+    def value(result: re.Match[str]) -> str:
+        indent, alone, inside = result.groups()
+        inputs = values[alone or inside]
         if inside:
-            return str(given)
-        rows = [given] if isinstance(given, str) else given
+            return str(inputs)
+        rows = [inputs] if isinstance(inputs, str) else inputs
         return "".join(f"{indent}{row}\n" if row else "\n" for row in rows)
 
     return _PLACE.sub(value, text)

@@ -119,20 +119,20 @@ def peak_requests(peaks: Any, outer: Outer) -> tuple[PeakRequest, ...]:
     if isinstance(peaks, str):
         peaks = (peaks,)
     if not isinstance(peaks, Mapping):
-        given = tuple(peaks)
-        if all(isinstance(one, PeakRequest) for one in given):
-            return given
-        peaks = dict.fromkeys(given, "absmax")
+        inputs = tuple(peaks)
+        if all(isinstance(one, PeakRequest) for one in inputs):
+            return inputs
+        peaks = dict.fromkeys(inputs, "absmax")
     angles = outer.axes.get("theta", np.empty(0)).reshape(-1)
     whole = angles[np.isfinite(angles)]
     ends = (float(whole.min()), float(whole.max())) if whole.size > 1 else (0.0, cycle(outer.loads))
-    found = []
+    result = []
     for name, kinds in peaks.items():
         for kind in (kinds,) if isinstance(kinds, str) else tuple(kinds):
             if kind not in KINDS:
                 raise ValueError(f"peaks: kind = {kind!r} of {name}: it is one of {', '.join(KINDS)}")
-            found.append(PeakRequest(name, kind, ends))
-    return tuple(dict.fromkeys(found))
+            result.append(PeakRequest(name, kind, ends))
+    return tuple(dict.fromkeys(result))
 
 
 def peak_steps(

@@ -78,10 +78,10 @@ def factor_to_si(what: str, unit: str, si: str) -> Fraction:
         scaled = parse_unit(unit)
     except ValueError as error:
         raise ValueError(f"{what}: {error}; {_must_be(si)}") from None
-    wanted = parse_unit(si)
-    if scaled.si == wanted.si:
-        return scaled.size / wanted.size
-    if scaled.si[:4] == PER_TIME[:4] and wanted.si == ANGULAR_SPEED and unit.lstrip("1 ").startswith("/"):
+    requested = parse_unit(si)
+    if scaled.si == requested.si:
+        return scaled.size / requested.size
+    if scaled.si[:4] == PER_TIME[:4] and requested.si == ANGULAR_SPEED and unit.lstrip("1 ").startswith("/"):
         raise ValueError(f"{what}: {_RATE}")
     raise ValueError(f"{what}: {hint}{_must_be(si)}")
 
@@ -152,19 +152,19 @@ def _factor_of_pint(name: str, value: Any, si: str) -> Fraction:
     with IMPORTS:
         from .pint_units import size_of
 
-    wanted = parse_unit(si)
+    requested = parse_unit(si)
     try:
         approximate = size_of(value.units)
     except ValueError:
         approximate = None
-    if approximate is None or approximate.si != wanted.si:
+    if approximate is None or approximate.si != requested.si:
         raise ValueError(f"{name} = {shown(value)}: {_must_be(si)}")
     try:
         size = parse_unit(f"{value.units:~C}").size
     except ValueError:
         size = approximate.size
     same = abs(size - approximate.size) <= abs(size) / 10**12
-    return (size if same else approximate.size) / wanted.size
+    return (size if same else approximate.size) / requested.size
 
 
 def _must_be(si: str) -> str:

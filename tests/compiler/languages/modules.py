@@ -36,13 +36,13 @@ def written(language, program, folder, *options):
 def wrong_names(answers, point, ulps=2.0):
     """The names of the coverage set that are not what the exact interpretation says."""
     with mpmath.workdps(30):
-        wanted = exactly(coverage(), point)
+        expected = exactly(coverage(), point)
         x, y = map(mpmath.mpf, (point["x"], point["y"]))
-        wanted["lost"] += (x + y - mpmath.mpf(point["x"] + point["y"])) / 2
+        expected["lost"] += (x + y - mpmath.mpf(point["x"] + point["y"])) / 2
         size = max(1, *map(abs, point.values()))
         bound = ulps * 2.0**-52
         return [
             n
             for n in NAMES
-            if n in answers and abs(answers[n] - wanted[n]) > bound * max(size, abs(wanted[n]))
+            if n in answers and abs(answers[n] - expected[n]) > bound * max(size, abs(expected[n]))
         ]

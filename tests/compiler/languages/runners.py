@@ -37,10 +37,10 @@ def by_c(place, outputs):
 
     def call(given):
         size = next(iter(given.values())).size
-        found = [np.full(size, 7.0) for _ in outputs]
-        columns = [(POINTER * len(group))(*map(pointer, group)) for group in (given.values(), found)]
+        result = [np.full(size, 7.0) for _ in outputs]
+        columns = [(POINTER * len(group))(*map(pointer, group)) for group in (given.values(), result)]
         getattr(loaded, f"{place.stem}_array")(ctypes.c_size_t(size), *columns)
-        return dict(zip(outputs, found, strict=True))
+        return dict(zip(outputs, result, strict=True))
 
     return call
 
@@ -49,8 +49,8 @@ def by_octave(place, outputs):
     """The function, called once."""
 
     def call(given):
-        found = octave(place, [*given.values()], len(outputs))
-        return dict(zip(outputs, found, strict=True))
+        result = octave(place, [*given.values()], len(outputs))
+        return dict(zip(outputs, result, strict=True))
 
     return call
 
@@ -60,8 +60,8 @@ def by_jax(place, outputs):
 
     def call(given):
         with jax_in_doubles():
-            found = imported(place).evaluate(**given)
-            return {name: np.asarray(value) for name, value in found.items()}
+            result = imported(place).evaluate(**given)
+            return {name: np.asarray(value) for name, value in result.items()}
 
     return call
 
@@ -85,8 +85,8 @@ def caller(language, place, inputs, outputs):
     run = RUNNERS[language](place, list(outputs))
 
     def call(columns):
-        found = run(dict(zip(inputs, columns, strict=True)))
-        return {name: np.asarray(found[name], float) for name in outputs}
+        result = run(dict(zip(inputs, columns, strict=True)))
+        return {name: np.asarray(result[name], float) for name in outputs}
 
     return call
 

@@ -17,7 +17,7 @@ def test_the_coverage_set_against_exact(language, tmp_path):
     program = keep_outputs(coverage(), NAMES)
     place = written(language_of(language), program, tmp_path)
     columns = [np.array([point[name] for point in POINTS]) for name in program.inputs]
-    found = caller(language, place, program.inputs, NAMES)(columns)
-    rows = zip(*(np.broadcast_to(found[name], len(POINTS)) for name in NAMES), strict=True)
+    result = caller(language, place, program.inputs, NAMES)(columns)
+    rows = zip(*(np.broadcast_to(result[name], len(POINTS)) for name in NAMES), strict=True)
     for point, row in zip(POINTS, rows, strict=True):
         assert not wrong_names(dict(zip(NAMES, map(float, row), strict=True)), point), point

@@ -37,8 +37,8 @@ ANY = st.floats(allow_nan=True, allow_infinity=True)
 
 def test_the_coverage_set_against_the_interpretation():
     for point, answers in zip(POINTS, in_javascript(coverage(), POINTS), strict=True):
-        wanted = in_doubles(coverage(), point)
-        assert {n for n in NAMES if not same_bits(answers[n], wanted[n])} <= {"waves", "angle"}
+        expected = in_doubles(coverage(), point)
+        assert {n for n in NAMES if not same_bits(answers[n], expected[n])} <= {"waves", "angle"}
 
 
 @pytest.mark.sampled
@@ -49,8 +49,8 @@ def test_the_coverage_set_against_the_interpretation():
 @settings(max_examples=cases(15, 25), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_no_bit_differs_from_the_interpretation(program, points):
     for point, answers in zip(points, in_javascript(program, points), strict=True):
-        wanted = in_doubles(program, point)
-        assert all(same_bits(answers[name], wanted[name]) for name in program.outputs), point
+        expected = in_doubles(program, point)
+        assert all(same_bits(answers[name], expected[name]) for name in program.outputs), point
 
 
 def test_the_error_of_a_product_is_whole():
@@ -58,9 +58,9 @@ def test_the_error_of_a_product_is_whole():
     program = program_of_nested(("two_product_error", "x", "y"))
     values = (0.1, -1 / 3, math.pi, 1e150, 2.0**-300 * 1.1, 12345.678901234567)
     points = [{"x": a, "y": b, "z": 0.0} for a in values for b in values]
-    found = in_javascript(program, points)
-    assert [one["out"] for one in found] == [in_doubles(program, point)["out"] for point in points]
-    assert any(one["out"] for one in found)
+    result = in_javascript(program, points)
+    assert [one["out"] for one in result] == [in_doubles(program, point)["out"] for point in points]
+    assert any(one["out"] for one in result)
 
 
 def test_every_name_of_the_committed_program():
@@ -68,8 +68,8 @@ def test_every_name_of_the_committed_program():
     program = committed(*quantities())
     point = POINT | LINKS | LOADS
     (answers,) = in_javascript(program, [point])
-    wanted = in_doubles(program, point)
-    far = [n for n in wanted if not math.isclose(answers[n], wanted[n], rel_tol=1e-12, abs_tol=1e-12)]
+    expected = in_doubles(program, point)
+    far = [n for n in expected if not math.isclose(answers[n], expected[n], rel_tol=1e-12, abs_tol=1e-12)]
     assert not far
 
 

@@ -33,9 +33,9 @@ def test_the_coverage_set_against_exact(point):
 @given(programs(WITH_NAN), st.fixed_dictionaries(dict.fromkeys(INPUTS, ANY)))
 @settings(max_examples=cases(20, 100), deadline=None)
 def test_no_bit_differs_from_the_interpretation(program, point):
-    wanted = in_doubles(program, point)
+    expected = in_doubles(program, point)
     answers = compile_python(program)(*(point[name] for name in program.inputs))
-    assert all(same_bits(a, wanted[n]) for n, a in zip(program.outputs, answers, strict=True))
+    assert all(same_bits(a, expected[n]) for n, a in zip(program.outputs, answers, strict=True))
 
 
 def test_the_committed_program():

@@ -23,12 +23,12 @@ POINTER = ctypes.POINTER(ctypes.c_double)
 
 def tool(name):
     """The path of a program."""
-    found = shutil.which(name)
-    if found is None and os.environ.get("CI"):
+    result = shutil.which(name)
+    if result is None and os.environ.get("CI"):
         pytest.fail(f"{name} is not installed")
-    if found is None:
+    if result is None:
         pytest.skip(f"{name} is not installed")
-    return found
+    return result
 
 
 def run(*command, **more):
@@ -130,8 +130,8 @@ def es_module(file, calls):
     (folder / f"{file.stem}.mjs").write_text(file.read_text(encoding="utf-8"), encoding="utf-8")
     (folder / "calls.json").write_text(json.dumps(_sent(calls)), encoding="utf-8")
     (folder / "main.mjs").write_text(NODE.format(name=file.stem), encoding="utf-8")
-    found = json.loads(run(node(), "main.mjs", cwd=folder))
-    return [_numbers(each) for each in found]
+    result = json.loads(run(node(), "main.mjs", cwd=folder))
+    return [_numbers(each) for each in result]
 
 
 def _sent(value):

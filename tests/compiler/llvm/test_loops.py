@@ -114,6 +114,6 @@ def test_short_loops_run_in_vectors(function, kinds, operations, monkeypatch):
     own = machine._optimise
     monkeypatch.setattr(machine, "_optimise", lambda m, t: own(m, t) or texts.append(str(m)))
     CompiledLoops(function, kinds)
-    found = re.findall(r"= (f\w+) (?:[a-z]+ )*<\d+ x double>", texts[0])
-    found += re.findall(r"call (?:[a-z]+ )*<\d+ x double> @llvm\.(\w+)\.v", texts[0])
-    assert operations <= set(found)
+    result = re.findall(r"= (f\w+) (?:[a-z]+ )*<\d+ x double>", texts[0])
+    result += re.findall(r"call (?:[a-z]+ )*<\d+ x double> @llvm\.(\w+)\.v", texts[0])
+    assert operations <= set(result)

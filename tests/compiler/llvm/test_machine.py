@@ -40,12 +40,12 @@ def undefined(data):
     sections = [struct.unpack_from("<IIQQQQIIQQ", data, start + size * k) for k in range(count)]
     (symbols,) = (section for section in sections if section[1] == 2)
     names = sections[symbols[6]][4]
-    found = set()
+    result = set()
     for at in range(symbols[4] + 24, symbols[4] + symbols[5], 24):
         name, _, _, section = struct.unpack_from("<IBBH", data, at)
         if section == 0:
-            found.add(data[names + name : data.index(b"\0", names + name)].decode())
-    return found
+            result.add(data[names + name : data.index(b"\0", names + name)].decode())
+    return result
 
 
 @pytest.mark.parametrize("triple", TRIPLES)

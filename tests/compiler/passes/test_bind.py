@@ -67,8 +67,8 @@ def test_a_state_that_the_law_gives_means_the_same():
     omega = exactly(law, POINT)["omega"]
     state = keep_outputs(validate(program_of(names, Variant(state=True))), names)
     assert "omega0" not in state.inputs
-    found, wanted = exactly(state, POINT | {"omega": omega}), exactly(law, POINT)
-    assert all(abs(found[name] / wanted[name] - 1) < 1e-45 for name in names)
+    result, expected = exactly(state, POINT | {"omega": omega}), exactly(law, POINT)
+    assert all(abs(result[name] / expected[name] - 1) < 1e-45 for name in names)
 
 
 CHOICE = (
@@ -83,15 +83,15 @@ CHOICE = (
 @pytest.mark.parametrize(("known", "op"), [(True, "neg"), (False, "abs")])
 def test_a_known_condition_leaves_the_side_that_is_taken_under_its_name(known, op):
     program = Program(("x", "y"), CHOICE, ("out",), {"u": Note("m", "a length")})
-    found = validate(assume(program, {"wide": known}))
-    assert [(line.name, line.op) for line in found.lines] == [("u", op), ("out", "mul")]
-    assert found.notes == program.notes
+    result = validate(assume(program, {"wide": known}))
+    assert [(line.name, line.op) for line in result.lines] == [("u", op), ("out", "mul")]
+    assert result.notes == program.notes
 
 
 def test_a_side_with_a_name_of_its_own_keeps_it():
     program = Program(("x", "y"), CHOICE, ("out",), {"u": Note("m", ""), "_1": Note("m", "")})
-    found = validate(assume(program, {"wide": True}))
-    assert [(line.name, line.op) for line in found.lines] == [("_1", "neg"), ("u", "copy"), ("out", "mul")]
+    result = validate(assume(program, {"wide": True}))
+    assert [(line.name, line.op) for line in result.lines] == [("_1", "neg"), ("u", "copy"), ("out", "mul")]
 
 
 def test_an_output_that_is_the_condition_stays():

@@ -30,8 +30,8 @@ def in_pairs(lines, point):
         writer.assign(line)
     pair = writer.pairs[lines[-1].name]
     parts = [part for part in pair if isinstance(part, str)]
-    found = in_doubles(Program(tuple(point), tuple(writer.lines), tuple(parts), {}), point)
-    return sum(mpmath.mpf(found[part]) for part in parts)
+    result = in_doubles(Program(tuple(point), tuple(writer.lines), tuple(parts), {}), point)
+    return sum(mpmath.mpf(result[part]) for part in parts)
 
 
 def exactly(lines, point):
@@ -122,16 +122,16 @@ def test_the_coverage_set_is_rounded_once():
     program = keep_outputs(program, [name for name in program.outputs if name != "grown"])
     wide = validate(double_double(program, double_constants()))
     for point in POINTS:
-        found = in_doubles(wide, point)
+        result = in_doubles(wide, point)
         from tests.compiler.programs import run_exactly
 
         with mpmath.workdps(60):
             exact = run_exactly(program, mpmath.mp, point)
             for name in program.outputs:
-                if isinstance(found[name], float):
-                    assert ulp_error(found[name], mpmath.mpf(exact[name])) <= 0.5 + 1e-9, name
+                if isinstance(result[name], float):
+                    assert ulp_error(result[name], mpmath.mpf(exact[name])) <= 0.5 + 1e-9, name
                 else:
-                    assert found[name] == exact[name]
+                    assert result[name] == exact[name]
 
 
 @pytest.mark.sampled

@@ -40,33 +40,33 @@ def exact(point, names):
 
 def test_a_sum():
     for point in points("sum"):
-        found = value(lambda w: w.sum_of(tuple("abc"), tuple("def")), point)
-        assert abs(found - exact(point, "abcdef")) <= THIRD * (abs(exact(point, "abc")) + 4)
+        result = value(lambda w: w.sum_of(tuple("abc"), tuple("def")), point)
+        assert abs(result - exact(point, "abcdef")) <= THIRD * (abs(exact(point, "abc")) + 4)
 
 
 def test_a_product():
     for point in points("product"):
-        found, wanted = value(lambda w: w.product(tuple("abc"), tuple("def")), point), exact(point, "abc")
-        wanted *= exact(point, "def")
-        assert abs(found - wanted) <= 4 * THIRD * abs(wanted)
+        result, expected = value(lambda w: w.product(tuple("abc"), tuple("def")), point), exact(point, "abc")
+        expected *= exact(point, "def")
+        assert abs(result - expected) <= 4 * THIRD * abs(expected)
 
 
 @pytest.mark.parametrize("build", [Expansions.ordered, Expansions.after_cancelling])
 def test_words_that_do_not_overlap(build):
     for point in points("order"):
-        found = value(lambda w: build(w, tuple("abc"))[:2], point)
-        assert abs(found - exact(point, "abc")) <= Fraction(2) ** -104 * abs(exact(point, "abc"))
+        result = value(lambda w: build(w, tuple("abc"))[:2], point)
+        assert abs(result - exact(point, "abc")) <= Fraction(2) ** -104 * abs(exact(point, "abc"))
 
 
 def test_a_difference_of_which_two_words_cancel():
     """What is left keeps the digits that three words have of it, whichever word it is in."""
     for point in points("cancel"):
         near = point | {"d": -point["a"], "e": -point["b"]}
-        found = value(lambda w: w.after_cancelling(w.sum_of(tuple("abc"), tuple("def"))), near)
-        assert found == Fraction(near["c"] + near["f"])
+        result = value(lambda w: w.after_cancelling(w.sum_of(tuple("abc"), tuple("def"))), near)
+        assert result == Fraction(near["c"] + near["f"])
         near = point | {"d": -point["a"]}
-        found = value(lambda w: w.after_cancelling(w.sum_of(tuple("abc"), tuple("def"))), near)
-        assert abs(found - exact(near, "bcef")) <= 2 * THIRD
+        result = value(lambda w: w.after_cancelling(w.sum_of(tuple("abc"), tuple("def"))), near)
+        assert abs(result - exact(near, "bcef")) <= 2 * THIRD
 
 
 def test_exact_ones_are_exact():

@@ -14,7 +14,7 @@ def fused(*lines, outputs=("out",), notes=None):
 
 
 @pytest.mark.parametrize(
-    ("op", "args", "wanted"),
+    ("op", "args", "expected"),
     [
         ("add", ("p", "z"), [("mul_add", ("x", "y", "z"))]),
         ("add", ("z", "p"), [("mul_add", ("x", "y", "z"))]),
@@ -23,21 +23,21 @@ def fused(*lines, outputs=("out",), notes=None):
         ("sub", ("p", 2.0), [("mul_add", ("x", "y", -2.0))]),
     ],
 )
-def test_a_product_goes_into_its_sum(op, args, wanted):
-    assert [(line.op, line.args) for line in fused(Line("out", op, args)).lines] == wanted
+def test_a_product_goes_into_its_sum(op, args, expected):
+    assert [(line.op, line.args) for line in fused(Line("out", op, args)).lines] == expected
 
 
 @pytest.mark.parametrize(
-    ("op", "args", "wanted"),
+    ("op", "args", "expected"),
     [
         ("add", ("n", "z"), [("neg", ("x",)), ("mul_add", ("out_factor", "y", "z"))]),
         ("sub", ("n", "z"), [("neg", ("x",)), ("neg", ("z",)), ("mul_add", ("out_factor", "y", "out_term"))]),
         ("sub", ("z", "n"), [("mul_add", ("x", "y", "z"))]),
     ],
 )
-def test_minus_a_product_goes_into_its_sum(op, args, wanted):
+def test_minus_a_product_goes_into_its_sum(op, args, expected):
     lines = fused(Line("n", "neg", ("p",)), Line("out", op, args)).lines
-    assert [(line.op, line.args) for line in lines] == wanted
+    assert [(line.op, line.args) for line in lines] == expected
 
 
 def test_a_product_that_is_used_twice_stays():

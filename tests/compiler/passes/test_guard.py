@@ -37,9 +37,9 @@ def test_a_good_element_is_untouched(x, status):
     ("x", "y"), [(math.nan, 3), (math.inf, 3), (-math.inf, 3), (3, 1.9), (3, -5), (3, math.inf)]
 )
 def test_a_bad_element_is_nan_with_its_status(x, y):
-    found = guarded(float(x), float(y))
-    assert math.isnan(found["u"])
-    assert found["status"] == BAD_INPUT
+    result = guarded(float(x), float(y))
+    assert math.isnan(result["u"])
+    assert result["status"] == BAD_INPUT
 
 
 @pytest.mark.parametrize(
@@ -64,9 +64,9 @@ def test_nothing_is_added_for_a_status_that_is_not_asked_for():
 
 def test_an_input_that_is_an_output_is_nan_where_bad():
     program = Program(("x",), (Line("u", "neg", ("x",)),), ("u", "x"), {})
-    found = in_doubles(validate(guard_inputs(program, ["x"], {}, {})), {"x": math.inf})
-    assert len(found) == 2
-    assert all(map(math.isnan, found.values()))
+    result = in_doubles(validate(guard_inputs(program, ["x"], {}, {})), {"x": math.inf})
+    assert len(result) == 2
+    assert all(map(math.isnan, result.values()))
 
 
 NAMES = ("Y", "phi", "V_C", "j_C", "alpha_BC", "a_C_wrt_ec", "omega", "V_B", "margin", "status")
@@ -86,6 +86,8 @@ BAD = {"theta": math.inf, "ec": -math.inf, "AB": -0.125, "BC": 0.0, "omega0": ma
 def test_every_quantity_that_needs_a_bad_input_is_nan(name, alpha):
     program = committed(*NAMES)
     needs = depends_on(program)
-    found = in_doubles(guard_inputs(program, INPUTS, LEAST, {}), POINT | {"alpha": alpha} | {name: BAD[name]})
-    assert found.pop("status") == BAD_INPUT
-    assert [q for q, value in found.items() if math.isnan(value)] == [q for q in found if name in needs[q]]
+    result = in_doubles(
+        guard_inputs(program, INPUTS, LEAST, {}), POINT | {"alpha": alpha} | {name: BAD[name]}
+    )
+    assert result.pop("status") == BAD_INPUT
+    assert [q for q, value in result.items() if math.isnan(value)] == [q for q in result if name in needs[q]]

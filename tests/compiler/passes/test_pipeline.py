@@ -23,8 +23,8 @@ def test_the_operations_after_each_pass():
 @pytest.mark.parametrize("fixed", [{}, CONCENTRIC, {"branch": -1.0}, {"AB": 0.0}])
 def test_the_committed_program_keeps_its_meaning(fixed):
     program = committed("s", "V_C", "j_C", "alpha_BC_wrt_theta", "a_C_wrt_ec_AB", "status")
-    found, wanted = exactly(optimise(program, fixed), POINT | fixed), exactly(program, POINT | fixed)
-    assert all(abs(found[name] - wanted[name]) <= 1e-45 * abs(wanted[name]) for name in wanted)
+    result, expected = exactly(optimise(program, fixed), POINT | fixed), exactly(program, POINT | fixed)
+    assert all(abs(result[name] - expected[name]) <= 1e-45 * abs(expected[name]) for name in expected)
 
 
 def operations(*names, state=False, **fixed):

@@ -41,8 +41,8 @@ FINAL = {
 @given(program=programs(), point=points())
 @settings(max_examples=cases(15, 75), deadline=None)
 def test_the_exact_meaning_stays(name, program, point):
-    found, whole = validate(EXACT[name](program, point)), exactly(program, point)
-    assert same(exactly(found, point), {output: whole[output] for output in found.outputs})
+    result, whole = validate(EXACT[name](program, point)), exactly(program, point)
+    assert same(exactly(result, point), {output: whole[output] for output in result.outputs})
 
 
 @pytest.mark.sampled

@@ -27,7 +27,7 @@ def worst(angles):
     with mpmath.workdps(60):
         pairs = ((sine_and_cosine(a), (mpmath.sin(a), mpmath.cos(a))) for a in angles)
         return max(
-            ulp_error(got, want) for gots, wants in pairs for got, want in zip(gots, wants, strict=True)
+            ulp_error(result, want) for gots, wants in pairs for result, want in zip(gots, wants, strict=True)
         )
 
 
@@ -96,15 +96,15 @@ def test_names_and_notes_stay():
 
 @pytest.mark.parametrize("point", POINTS)
 def test_the_coverage_set(point):
-    found, wanted = (
+    result, expected = (
         in_doubles(expand_trigonometry(coverage(), constants()), point),
         in_doubles(coverage(), point),
     )
-    assert all(math.isclose(found[name], wanted[name], rel_tol=1e-15, abs_tol=1e-15) for name in found)
+    assert all(math.isclose(result[name], expected[name], rel_tol=1e-15, abs_tol=1e-15) for name in result)
 
 
 def test_the_committed_program_keeps_its_values():
     program = committed("Y", "V_C", "a_C", "phi", "alpha_BC")
     expanded = value_numbering(expand_trigonometry(program, constants()))
-    found, wanted = in_doubles(validate(expanded), POINT), in_doubles(program, POINT)
-    assert all(math.isclose(found[name], wanted[name], rel_tol=4e-15) for name in found)
+    result, expected = in_doubles(validate(expanded), POINT), in_doubles(program, POINT)
+    assert all(math.isclose(result[name], expected[name], rel_tol=4e-15) for name in result)

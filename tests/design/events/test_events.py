@@ -79,14 +79,14 @@ def test_values(ec, AB, BC):
     with mp.workdps(60 if AB > 1e-100 else 420):
         oracle = Oracle(ec, AB, BC)
         exact = oracle.quantities()
-        found = dx.events(ec=ec, AB=AB, BC=BC)
+        result = dx.events(ec=ec, AB=AB, BC=BC)
         arrays = dx.events(ec=np.array([ec, 0.0]), AB=AB, BC=BC)
         for name, value in exact.items():
             tiny = name == "theta_outer" and abs(ec) < 1e-20 * AB  # the bisection ends at 1e-57
-            for own in (found[name], float(arrays[name][0])):
+            for own in (result[name], float(arrays[name][0])):
                 assert close(own, value, 2e-15) or (tiny and abs(own - value) < 1e-50), name
-    assert found["status"] == 0
-    assert found["slow_stroke"] == (ec > 0) - (ec < 0)
+    assert result["status"] == 0
+    assert result["slow_stroke"] == (ec > 0) - (ec < 0)
 
 
 @pytest.mark.parametrize(
@@ -95,7 +95,7 @@ def test_values(ec, AB, BC):
 def test_gradients(ec, AB, BC):
     with mp.workdps(60):
         h = mp.mpf(2) ** -90
-        found = dx.events(ec=ec, AB=AB, BC=BC)["gradient"]
+        result = dx.events(ec=ec, AB=AB, BC=BC)["gradient"]
         for k, parameter in enumerate(LENGTHS):
             up, down = (
                 [mp.mpf(x) + (j == k) * side * h for j, x in enumerate((ec, AB, BC))] for side in (1, -1)
@@ -103,7 +103,7 @@ def test_gradients(ec, AB, BC):
             up, down = Oracle(*up).quantities(), Oracle(*down).quantities()
             for name in SLOPES:
                 exact = (up[name] - down[name]) / (2 * h)
-                assert close(found[name][parameter], exact, 1e-13), (name, parameter)
+                assert close(result[name][parameter], exact, 1e-13), (name, parameter)
 
 
 @pytest.mark.parametrize(
@@ -113,18 +113,18 @@ def test_gradients(ec, AB, BC):
 @pytest.mark.parametrize("branch", [1, -1])
 def test_velocities_are_the_peaks(ec, AB, BC, omega0, branch):
     design = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "branch": branch}
-    found = dx.events(**design)
+    result = dx.events(**design)
     for name, kind in (
         ("V_outward", "max" if branch > 0 else "min"),
         ("V_inward", "min" if branch > 0 else "max"),
     ):
         top = dx.peak("V_C", kind=kind, **design)
-        assert found[name] == pytest.approx(abs(top["value"]), rel=1e-13)
-        assert math.cos(found[f"theta_{name}"] - top["theta"]) == pytest.approx(1.0, abs=1e-12)
+        assert result[name] == pytest.approx(abs(top["value"]), rel=1e-13)
+        assert math.cos(result[f"theta_{name}"] - top["theta"]) == pytest.approx(1.0, abs=1e-12)
         if ec:  # else the peak is one of two
             for p, slope in top["gradient"].items():
                 sign = math.copysign(1.0, top["value"])
-                assert found["gradient"][name][p] == pytest.approx(
+                assert result["gradient"][name][p] == pytest.approx(
                     sign * slope, rel=1e-6, abs=1e-8 * omega0**2
                 )
     assert "omega0" not in dx.events(**{**design, "omega0": None})["gradient"]["V_inward"]
@@ -165,20 +165,20 @@ def test_symmetries(AB, BC, share):
 
 
 def test_in_line():
-    found = dx.events(ec=0.0, AB=0.125, BC=0.35)
-    assert (found["stroke"], found["time_ratio"], found["slow_stroke"]) == (0.25, 1.0, 0)
-    assert (found["theta_outer"], found["theta_inner"]) == (0.0, math.pi)
-    assert found["gradient"]["stroke"] == {"ec": 0.0, "AB": 2.0, "BC": 0.0}
+    result = dx.events(ec=0.0, AB=0.125, BC=0.35)
+    assert (result["stroke"], result["time_ratio"], result["slow_stroke"]) == (0.25, 1.0, 0)
+    assert (result["theta_outer"], result["theta_inner"]) == (0.0, math.pi)
+    assert result["gradient"]["stroke"] == {"ec": 0.0, "AB": 2.0, "BC": 0.0}
 
 
 def test_change_points():
-    found = dx.events(ec=0.25, AB=0.5, BC=0.75)
-    assert found["status"] == 2
-    assert (found["Y_inner"], found["theta_inner"]) == (0.0, math.pi / 2)
-    assert found["stroke"] == pytest.approx(math.sqrt(1.25**2 - 0.25**2), rel=1e-15)
-    assert found["gradient"]["stroke"]["ec"] == math.inf
+    result = dx.events(ec=0.25, AB=0.5, BC=0.75)
+    assert result["status"] == 2
+    assert (result["Y_inner"], result["theta_inner"]) == (0.0, math.pi / 2)
+    assert result["stroke"] == pytest.approx(math.sqrt(1.25**2 - 0.25**2), rel=1e-15)
+    assert result["gradient"]["stroke"]["ec"] == math.inf
     # Towards it the largest speed is AB omega (1 + sqrt(BC/AB)), from below.
-    assert found["V_inward"] == pytest.approx(0.5 * (1 + math.sqrt(1.5)), rel=1e-12)
+    assert result["V_inward"] == pytest.approx(0.5 * (1 + math.sqrt(1.5)), rel=1e-12)
     equal = dx.events(ec=0.0, AB=0.5, BC=0.5)
     assert (equal["stroke"], equal["time_ratio"], equal["theta_inner"]) == (1.0, 1.0, math.pi)
 
@@ -189,10 +189,10 @@ def test_change_points():
 def test_at_a_change_point_the_speed_is_that_within_the_stroke(ec, AB, omega0, branch):
     """It jumps there: from the other side it would be that of the other stroke."""
     BC = AB + abs(ec)
-    found = dx.events(ec=ec, AB=AB, BC=BC, omega0=omega0, branch=branch)
+    result = dx.events(ec=ec, AB=AB, BC=BC, omega0=omega0, branch=branch)
     arrays = dx.events(ec=[ec], AB=AB, BC=BC, omega0=omega0, branch=branch)
     limit = AB * abs(omega0) * (1 + math.sqrt(BC / AB))
-    speeds = found["V_outward"], found["V_inward"]
+    speeds = result["V_outward"], result["V_inward"]
     assert max(speeds) == pytest.approx(limit, rel=1e-14)
     theta = np.linspace(0.0, 2 * np.pi, 1_501)[:-1] + 1e-4
     swept = dx.evaluate("V_C", theta=theta, ec=ec, AB=AB, BC=BC, omega0=omega0, branch=branch) * branch
@@ -209,11 +209,11 @@ def test_a_crank_as_long_as_its_rod_is_fastest_where_the_slider_comes_to_rest_at
     many = dx.events(ec=[0.0, 0.0, 0.3 * AB], AB=AB, BC=[AB, 2 * AB, 2 * AB], omega0=omega0, branch=branch)
     limit = fastest(AB, 0, branch)
     assert abs(fastest(AB, mp.mpf(2) ** -80, branch) / limit - 1) < 1e-11  # that of longer rods
-    for found in (one, {n: v[0] for n, v in many.items() if n != "gradient"}):
+    for result in (one, {n: v[0] for n, v in many.items() if n != "gradient"}):
         for name, way in (("V_outward", -1), ("V_inward", 1)):
-            assert found[name] == pytest.approx(float(abs(omega0) * limit), rel=1e-15)
+            assert result[name] == pytest.approx(float(abs(omega0) * limit), rel=1e-15)
             quarter = branch * way * math.copysign(math.pi / 2, omega0)
-            assert abs(math.remainder(found[f"theta_{name}"] - quarter, 2 * math.pi)) < 4e-15
+            assert abs(math.remainder(result[f"theta_{name}"] - quarter, 2 * math.pi)) < 4e-15
     for name in ("V_outward", "V_inward"):
         slopes = one["gradient"][name]
         assert slopes["omega0"] == pytest.approx(math.copysign(2 * AB, omega0), rel=1e-15)
@@ -260,24 +260,24 @@ def test_advance_is_outward(branch, omega0):
     design = {"ec": 0.02, "AB": 0.04, "BC": 0.064, "branch": branch}
     theta = (np.arange(200_000) + 0.5) * 2 * np.pi / 200_000
     outward = np.mean(branch * dx.evaluate("V_C", theta=theta, omega0=omega0, **design) > 0)
-    found = dx.events(omega0=omega0, **design)
-    assert found["advance_angle"] == pytest.approx(2 * np.pi * outward, abs=1e-4)
-    assert found["slow_stroke"] == (1 if outward > 0.5 else -1)
+    result = dx.events(omega0=omega0, **design)
+    assert result["advance_angle"] == pytest.approx(2 * np.pi * outward, abs=1e-4)
+    assert result["slow_stroke"] == (1 if outward > 0.5 else -1)
     for name in ("outer", "inner"):
-        at = dx.evaluate("Y", theta=found[f"theta_{name}"], **design)
-        assert at == pytest.approx(found[f"Y_{name}"], rel=1e-14)
-        assert -math.pi / 2 <= found[f"theta_{name}"] <= 1.5 * math.pi
+        at = dx.evaluate("Y", theta=result[f"theta_{name}"], **design)
+        assert at == pytest.approx(result[f"Y_{name}"], rel=1e-14)
+        assert -math.pi / 2 <= result[f"theta_{name}"] <= 1.5 * math.pi
 
 
 def test_paper_b():
     """Table 1: the dead centres at -11.087 and 123.557 deg, 225.355 deg outward, 134.645 inward; 88.79 mm."""
-    found = dx.events(ec="20 mm", AB="40 mm", BC="64 mm", omega0="2400 rpm")
+    result = dx.events(ec="20 mm", AB="40 mm", BC="64 mm", omega0="2400 rpm")
     degrees = [
-        round(math.degrees(found[n]), 3)
+        round(math.degrees(result[n]), 3)
         for n in ("theta_outer", "theta_inner", "advance_angle", "return_angle")
     ]
     assert degrees == [-11.087, 123.557, 225.355, 134.645]
-    assert round(found["stroke"] * 1e3, 2) == 88.79
+    assert round(result["stroke"] * 1e3, 2) == 88.79
     assert round(dx.events(ec=0.01, AB=0.04, BC=0.064)["stroke"] * 1e3, 2) == 81.70
     assert round(dx.events(ec=0.02, AB=0.04, BC=0.064, omega0=251.0)["V_inward"], 2) == 16.97
     assert round(dx.events(ec=0.02, AB=0.04, BC=0.064, omega0=251.0)["V_outward"], 2) == 10.49
@@ -312,13 +312,13 @@ def test_the_fastest_points_of_arrays_are_roots_of_the_acceleration():
     """There the acceleration changes its sign."""
     ec = np.linspace(-0.0239, 0.0239, 701)
     lengths = {"ec": ec, "AB": 0.04, "BC": 0.064}
-    found = dx.events(omega0=2.0, **lengths)
+    result = dx.events(omega0=2.0, **lengths)
     for stroke in ("V_outward", "V_inward"):
-        theta = found[f"theta_{stroke}"] + np.array([[-1e-9], [1e-9]])
+        theta = result[f"theta_{stroke}"] + np.array([[-1e-9], [1e-9]])
         before, after = np.sign(dx.evaluate("a_C", theta=theta, omega0=1.0, **lengths))
         assert (before == -after).all()
     one = dx.events(ec=float(ec[17]), AB=0.04, BC=0.064, omega0=2.0)
-    assert found["V_outward"][17] == pytest.approx(one["V_outward"], rel=1e-14)
+    assert result["V_outward"][17] == pytest.approx(one["V_outward"], rel=1e-14)
 
 
 @pytest.mark.parametrize("ec", [0.1, -0.1])
@@ -332,10 +332,10 @@ def test_a_crank_that_does_not_turn_has_no_slower_stroke(ec):
 
 def test_velocities_without_a_speed_are_slopes_of_the_position():
     machine = dx.Machine(ec=10, AB=75, BC=300, units="mm, deg, rpm")
-    found = machine.events()
-    assert found.units["V_inward"] == "mm/deg"
+    result = machine.events()
+    assert result.units["V_inward"] == "mm/deg"
     slopes = machine.evaluate("Y_wrt_theta", theta=np.linspace(0.0, 360.0, 36_001))
-    assert found["V_inward"] == pytest.approx(np.abs(slopes).max(), rel=1e-7)
+    assert result["V_inward"] == pytest.approx(np.abs(slopes).max(), rel=1e-7)
     at_speed = machine.events(omega0=300)
     assert at_speed.units["V_inward"] == "mm/s"
-    assert at_speed["V_inward"] == pytest.approx(found["V_inward"] * 300 * 6, rel=1e-13)
+    assert at_speed["V_inward"] == pytest.approx(result["V_inward"] * 300 * 6, rel=1e-13)

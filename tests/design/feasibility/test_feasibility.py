@@ -44,12 +44,12 @@ def test_limit_angles_keep_their_digits(ec):
 def test_limit_angles_of_what_can_hardly_be_assembled(left, side):
     """Where |ec| nearly is AB + BC only angles next to one quarter are left."""
     ec, middle = side * (1.25 - left), side * -math.pi / 2 % (2 * math.pi)
-    (found,) = dx.feasibility(ec=ec, AB=0.5, BC=0.75)["theta_intervals"]
+    (result,) = dx.feasibility(ec=ec, AB=0.5, BC=0.75)["theta_intervals"]
     many = dx.feasibility(ec=[ec, 0.0], AB=0.5, BC=0.75)["theta_intervals"][0]
     with mpmath.workdps(50):
         away = float(mpmath.acos((abs(mpmath.mpf(ec)) - mpmath.mpf(0.75)) / mpmath.mpf(0.5)))
     assert away > 0
-    for first, last in (found, many[0]):
+    for first, last in (result, many[0]):
         assert first == pytest.approx(middle - away, abs=2e-15)
         assert last == pytest.approx(middle + away, abs=2e-15)
     assert np.isnan(many[1]).all()
@@ -74,8 +74,8 @@ def test_margin_is_rounded_once(ec, AB, BC):
     ],
 )  # fmt: skip
 def test_kind(ec, AB, BC, kind, turns):
-    found = dx.feasibility(ec=ec, AB=AB, BC=BC)
-    assert (found["kind"], found["can_turn"]) == (kind, turns)
+    result = dx.feasibility(ec=ec, AB=AB, BC=BC)
+    assert (result["kind"], result["can_turn"]) == (kind, turns)
 
 
 def test_arrays_are_many_numbers():
@@ -99,10 +99,10 @@ def test_arrays_are_many_numbers():
 def test_status_next_to_the_limit_is_that_of_the_exact_margin(call):
     ec = np.nextafter(0.225, [0, 0.225, 1])
     exact = [Fraction(0.35) - Fraction(0.125) - Fraction(e) for e in ec]
-    wanted = [0 if m > 0 else 2 if m == 0 else 1 for m in exact]
-    assert call(ec=ec, AB=0.125, BC=0.35)["status"].tolist() == wanted
+    expected = [0 if m > 0 else 2 if m == 0 else 1 for m in exact]
+    assert call(ec=ec, AB=0.125, BC=0.35)["status"].tolist() == expected
     assert dx.feasibility(ec=ec, AB=0.125, BC=0.35)["kind"].tolist() == ["change point"] * 3
-    assert [call(ec=e, AB=0.125, BC=0.35)["status"] for e in ec] == wanted
+    assert [call(ec=e, AB=0.125, BC=0.35)["status"] for e in ec] == expected
 
 
 def test_the_shorter_one_turns():

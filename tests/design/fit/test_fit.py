@@ -51,8 +51,8 @@ def test_a_robust_loss_shrugs_off_outliers(loss):
     data = measured(5)
     data["a_C"][::20] += 2000.0
     for options in ({}, {"sigma": None}):
-        found = fitted(data, loss=loss, **options)
-        off = [(found["value"][n] - TRUE[n]) / found["std_error"][n] for n in found["names"]]
+        result = fitted(data, loss=loss, **options)
+        off = [(result["value"][n] - TRUE[n]) / result["std_error"][n] for n in result["names"]]
         assert max(map(abs, off)) < 3.5
     assert abs(fitted(data)["value"]["a_C_bias"] - 4.0) > 50.0
 
@@ -76,28 +76,28 @@ def test_residuals_far_beyond_sigma_are_told():
 def test_what_the_data_leave_open_is_named():
     """Speeds of the slider know the products of length and crank speed only."""
     speed = dx.evaluate("V_C", theta=THETA, omega0=150.0, **MACHINE)
-    found = dx.fit({"theta": THETA, "V_C": speed}, over={**OVER, "omega0": 140.0}, sigma={"V_C": 0.01})
-    (direction,) = found["unidentified"]
+    result = dx.fit({"theta": THETA, "V_C": speed}, over={**OVER, "omega0": 140.0}, sigma={"V_C": 0.01})
+    (direction,) = result["unidentified"]
     assert direction == pytest.approx({"ec": 1.0, "AB": 1.0, "BC": 1.0, "omega0": -1.0}, abs=1e-6)
-    assert found["status"] == 2
-    assert all(np.isinf(error) for error in found["std_error"].values())
-    assert found["value"]["AB"] * found["value"]["omega0"] == pytest.approx(0.125 * 150.0)
+    assert result["status"] == 2
+    assert all(np.isinf(error) for error in result["std_error"].values())
+    assert result["value"]["AB"] * result["value"]["omega0"] == pytest.approx(0.125 * 150.0)
 
 
 def test_the_jacobian_against_differences_of_the_truth():
-    found = fitted(measured(1))
-    at, value = 17, found["value"]
+    result = fitted(measured(1))
+    at, value = 17, result["value"]
 
     def model(**change):
         x = {**{k: mpmath.mpf(v) for k, v in value.items()}, **change}
         point = {"theta": THETA[at] + x["theta_offset"], "omega0": 150.0, **{n: x[n] for n in MACHINE}}
         return truth("a_C", **{"alpha": 0.0, "branch": 1, **point}) + x["a_C_bias"]
 
-    for name in found["names"]:
+    for name in result["names"]:
         step = 2.0**-20 * max(abs(value[name]), 2.0**-6)
         high, low = value[name] + step, value[name] - step
         slope = (float(model(**{name: high})) - float(model(**{name: low}))) / (high - low)
-        assert found["jacobian"]["a_C"][name][at] == pytest.approx(slope, rel=1e-8, abs=1e-4), name
+        assert result["jacobian"]["a_C"][name][at] == pytest.approx(slope, rel=1e-8, abs=1e-4), name
 
 
 def test_over_the_time_with_two_quantities_and_missing_samples():
@@ -111,11 +111,11 @@ def test_over_the_time_with_two_quantities_and_missing_samples():
     }
     data["Y"][::3] = np.nan
     over = {"ec": 0.0, "AB": (0.1, 0.2), "BC": (0.3, 0.5), "omega0": 18.0, "alpha": 25.0}
-    found = dx.fit(data, over=over, sigma={"Y": "0.1 mm", "a_C": 0.5})
+    result = dx.fit(data, over=over, sigma={"Y": "0.1 mm", "a_C": 0.5})
     for name, true in {**MACHINE, "omega0": 20.0, "alpha": 30.0}.items():
-        assert abs(found["value"][name] - true) < 4.0 * found["std_error"][name]
-    assert np.isnan(found["residuals"]["Y"][::3]).all()
-    model, x = found._model, np.array(list(found["value"].values()))
+        assert abs(result["value"][name] - true) < 4.0 * result["std_error"][name]
+    assert np.isnan(result["residuals"]["Y"][::3]).all()
+    model, x = result._model, np.array(list(result["value"].values()))
     for k in range(x.size):
         step = np.zeros(x.size)
         step[k] = 1e-6 * abs(x[k])
@@ -132,12 +132,12 @@ def test_without_sigma_the_residuals_say_how_sure_it_is():
 
 
 def test_prediction_report_picture_and_pickle(tmp_path):
-    found = pickle.loads(pickle.dumps(fitted(measured(1))))
-    value, error = found.predict(theta=THETA)["a_C"]
+    result = pickle.loads(pickle.dumps(fitted(measured(1))))
+    value, error = result.predict(theta=THETA)["a_C"]
     assert np.abs((value - CLEAN) / error).max() < 5.0
-    assert "theta_offset [rad]" in found.report()
-    assert repr(found) == found.report()
-    found.plot().savefig(tmp_path / "fit.png")
+    assert "theta_offset [rad]" in result.report()
+    assert repr(result) == result.report()
+    result.plot().savefig(tmp_path / "fit.png")
 
 
 def test_tables_labels_and_files(tmp_path, capsys):
@@ -185,7 +185,7 @@ def test_numbers_of_any_size(number):
         data[q][source.randrange(data[q].size)] = size()
     del inputs[name]
     try:
-        found = dx.fit(
+        result = dx.fit(
             data,
             over={name: source.choice([size(), tuple(sorted((size(), size()))), (0.1, 0.2), 0.12])},
             sigma=source.choice([None, {q: abs(size())}]),
@@ -196,7 +196,7 @@ def test_numbers_of_any_size(number):
     except ValueError as refused:
         error = refused
     else:
-        assert found.report()
+        assert result.report()
         return
     assert "/desaxe/" in traceback.extract_tb(error.__traceback__)[-1].filename, error
     assert any(word in str(error) for word in ("over", "sigma", "data", "fit:", name, q)), error
@@ -223,23 +223,23 @@ def test_a_bias_is_solved_for_at_each_step(start, loss):
     theta = np.radians(np.arange(0.0, 355.0, 6.0))
     Y = 0.04 * np.cos(theta) + np.sqrt(0.13**2 - (0.01 + 0.04 * np.sin(theta)) ** 2)
     over = dict(zip(lengths, STARTS[start], strict=True))
-    found = dx.fit({"theta": theta, "Y": Y - 0.17}, over=over, nuisance="Y_bias", loss=loss)
-    assert found["status"] == 0
-    assert found["value"] == pytest.approx({**lengths, "Y_bias": -0.17}, abs=1e-12)
+    result = dx.fit({"theta": theta, "Y": Y - 0.17}, over=over, nuisance="Y_bias", loss=loss)
+    assert result["status"] == 0
+    assert result["value"] == pytest.approx({**lengths, "Y_bias": -0.17}, abs=1e-12)
     speed = dx.evaluate("V_C", theta=theta, omega0=10.0, **lengths)  # of which a scale hides the size
     data = {"theta": theta, "Y": Y, "V_C": 1.5 * speed + 0.2}
     sigma = {"Y": 1e-4, "V_C": 1e-3}
-    found = dx.fit(data, over=over, sigma=sigma, nuisance=("V_C_scale", "V_C_bias"), loss=loss, omega0=10.0)
+    result = dx.fit(data, over=over, sigma=sigma, nuisance=("V_C_scale", "V_C_bias"), loss=loss, omega0=10.0)
     expected = {**lengths, "V_C_scale": 1.5, "V_C_bias": 0.2}
-    assert found["value"] == pytest.approx(expected, abs=1e-9)
+    assert result["value"] == pytest.approx(expected, abs=1e-9)
 
 
 def test_converged_only_where_the_gradient_is_small():
     """The best fit of these samples is beyond the limit of assembling: the search ends at a slope."""
     data = {"theta": THETA, "Y": 0.04 * np.cos(THETA) + 0.03 * np.cos(2.0 * THETA)}
-    found = dx.fit(data, over={"AB": 0.04, "BC": 0.06}, ec=0.0, nuisance="Y_bias")
-    assert (found["status"], found["at_bound"]) == (1, {})
-    assert "not converged" in found.report()
+    result = dx.fit(data, over={"AB": 0.04, "BC": 0.06}, ec=0.0, nuisance="Y_bias")
+    assert (result["status"], result["at_bound"]) == (1, {})
+    assert "not converged" in result.report()
     bounded = dx.fit(data, over={"AB": 0.04, "BC": (0.06, 0.09)}, ec=0.0, nuisance="Y_bias")
     assert (bounded["status"], bounded["at_bound"]) == (0, {"BC": "low"})
 
@@ -272,8 +272,8 @@ def test_a_scene_gives_all_of_its_machine(tmp_path, capsys):
     path.write_text("\n".join(["theta,T_in", *(f"{a!r},{b!r}" for a, b in rows)]), encoding="utf-8")
     scene.write_text(SCENE.format(mu=0.1), encoding="utf-8")
     assert main(["fit", str(path), "over=m_slider", "--machine", str(scene), "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert (found["status"], found["value"]["m_slider"]) == (0, pytest.approx(4.0, rel=1e-12))
+    result = json.loads(capsys.readouterr().out)
+    assert (result["status"], result["value"]["m_slider"]) == (0, pytest.approx(4.0, rel=1e-12))
     scene.write_text(SCENE.format(mu=[0.1, 0.2]), encoding="utf-8")
     assert main(["fit", str(path), "over=m_slider", "--machine", str(scene)]) == 2
     assert "mu: 2 values, and a fit is of one machine" in capsys.readouterr().err

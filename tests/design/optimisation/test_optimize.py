@@ -38,12 +38,12 @@ def test_at_a_bound_of_a_parameter_and_units():
 
 @pytest.mark.thorough
 def test_paper_a_has_no_highest_peak():
-    found = dx.optimize(maximize=("absmax", "a_C"), over={"ec": (0, 0.25)}, **A)
-    assert (found["status"], found["value"]) == (2, np.inf)
+    result = dx.optimize(maximize=("absmax", "a_C"), over={"ec": (0, 0.25)}, **A)
+    assert (result["status"], result["value"]) == (2, np.inf)
     same = dx.optimize(maximize=("absmax", "a_C"), over={"ec": (0, 0.25)}, keep={"margin": (0, None)}, **A)
     assert same["status"] == 2
-    assert found["ec"] == pytest.approx(0.225, abs=1e-6)
-    assert "grows without bound" in found["message"]
+    assert result["ec"] == pytest.approx(0.225, abs=1e-6)
+    assert "grows without bound" in result["message"]
     # The rod is flung round there in one direction: the acceleration has no bound along +Y only.
     assert dx.optimize(maximize=("max", "a_C"), over={"ec": (0, 0.25)}, **A)["value"] == np.inf
     down = dx.optimize(minimize=("min", "a_C"), over={"ec": (0, 0.25)}, **A)
@@ -53,27 +53,27 @@ def test_paper_a_has_no_highest_peak():
 @pytest.mark.thorough
 def test_what_is_bounded_at_the_limit_of_turning():
     """Paper A: max |V_C| stays below AB omega (1 + sqrt(BC/AB)) = 52.5 m/s."""
-    found = dx.optimize(maximize=("absmax", "V_C"), over={"ec": (0, 0.25)}, **A)
-    assert found["status"] == 3
-    assert found["value"] == pytest.approx(0.125 * 157.08 * (1 + np.sqrt(2.8)), rel=1e-4)
-    assert found["ec"] == pytest.approx(0.225, abs=1e-9)
-    assert "bounded" in found["message"]
+    result = dx.optimize(maximize=("absmax", "V_C"), over={"ec": (0, 0.25)}, **A)
+    assert result["status"] == 3
+    assert result["value"] == pytest.approx(0.125 * 157.08 * (1 + np.sqrt(2.8)), rel=1e-4)
+    assert result["ec"] == pytest.approx(0.225, abs=1e-9)
+    assert "bounded" in result["message"]
 
 
 def test_a_kink_between_two_signs():
     """The largest speed is least in line, where both strokes share it."""
-    found = dx.optimize(minimize=("absmax", "V_C"), over={"ec": (-0.1, 0.2)}, **A)
-    assert found["ec"] == pytest.approx(0.0, abs=1e-9)
-    assert (found["status"], found["active"]) == (0, {})
+    result = dx.optimize(minimize=("absmax", "V_C"), over={"ec": (-0.1, 0.2)}, **A)
+    assert result["ec"] == pytest.approx(0.0, abs=1e-9)
+    assert (result["status"], result["active"]) == (0, {})
 
 
 def test_a_kink_between_two_angles():
     """In line, the largest acceleration along +Y is reached at two angles; either side of it is worse."""
-    found = dx.optimize(minimize=("max", "a_C"), over={"ec": (-0.1, 0.14)}, **A)
-    assert found["ec"] == pytest.approx(0.0, abs=1e-6)
-    assert (found["status"], found["active"]) == (0, {})
-    assert "at a kink of the objective, inside of all limits" in found["message"]
-    assert np.isnan(found["multipliers"]["ec"])
+    result = dx.optimize(minimize=("max", "a_C"), over={"ec": (-0.1, 0.14)}, **A)
+    assert result["ec"] == pytest.approx(0.0, abs=1e-6)
+    assert (result["status"], result["active"]) == (0, {})
+    assert "at a kink of the objective, inside of all limits" in result["message"]
+    assert np.isnan(result["multipliers"]["ec"])
 
 
 def scanned(kind, name, ec, BC, keep, sense):
@@ -89,7 +89,7 @@ def scanned(kind, name, ec, BC, keep, sense):
 @pytest.mark.thorough
 def test_against_a_scan_and_moved_limits():
     ec, BC = np.linspace(0.0, 0.15, 301), np.linspace(0.3, 0.5, 201)
-    wanted = scanned("absmax", "a_C", ec, BC, 1.2, -1)
+    expected = scanned("absmax", "a_C", ec, BC, 1.2, -1)
     problem = {
         "minimize": ("absmax", "a_C"),
         "over": {"ec": (0.0, 0.15), "BC": (0.3, 0.5)},
@@ -98,11 +98,11 @@ def test_against_a_scan_and_moved_limits():
     }
     best = dx.optimize(keep={"time_ratio": (1.2, None)}, **problem)
     assert best["status"] == 0
-    assert best["value"] <= wanted[2]
-    assert best["value"] == pytest.approx(wanted[2], rel=2e-3)
+    assert best["value"] <= expected[2]
+    assert best["value"] == pytest.approx(expected[2], rel=2e-3)
     assert (best["ec"], best["BC"]) == (
-        pytest.approx(wanted[0], abs=2e-3),
-        pytest.approx(wanted[1], abs=5e-3),
+        pytest.approx(expected[0], abs=2e-3),
+        pytest.approx(expected[1], abs=5e-3),
     )
     d = 1e-4
     looser = dx.optimize(keep={"time_ratio": (1.2 - d, None)}, **problem)
@@ -157,53 +157,53 @@ def test_kinks_at_no_eccentricity(goal):
 def test_inside_of_all_limits():
     """Against a closed form: of a stroke and time ratio, the largest pressure angle has a least."""
     limits = dx.synthesize(stroke=0.1, time_ratio=1.3, max_pressure_angle=0.1)["limits"]
-    wanted, _ = limits["max_pressure_angle"]
+    expected, _ = limits["max_pressure_angle"]
     over = {"ec": (0.0, 0.2), "AB": (0.01, 0.1), "BC": (0.05, 0.4)}
     best = dx.optimize(
         minimize="max_pressure_angle", over=over, keep={"stroke": ("==", 0.1), "time_ratio": ("==", 1.3)}
     )
-    assert best["value"] == pytest.approx(wanted, rel=1e-10)
+    assert best["value"] == pytest.approx(expected, rel=1e-10)
     assert set(best["active"]) == {"stroke", "time_ratio"}
 
 
 def test_no_design_keeps_the_limits():
-    found = dx.optimize(
+    result = dx.optimize(
         maximize="stroke", over={"ec": (0, 0.3)}, keep={"margin": (0.5, None)}, AB=0.125, BC=0.35
     )
-    assert found["status"] == 1
-    assert "margin misses its lower limit by 0.275" in found["message"]
-    assert np.isnan(found["value"])
+    assert result["status"] == 1
+    assert "margin misses its lower limit by 0.275" in result["message"]
+    assert np.isnan(result["value"])
 
 
 @pytest.mark.parametrize("low", [0.0, 0.005])
 def test_where_no_design_keeps_the_limits_the_nearest_is_told(low):
     """The pressure angle grows with the eccentricity: the least one is the nearest."""
     keep = {"max_pressure_angle": (None, "5 deg")}
-    found = dx.optimize(minimize="time_ratio", over={"ec": (low, 0.04)}, keep=keep, AB=0.075, BC=0.3)
+    result = dx.optimize(minimize="time_ratio", over={"ec": (low, 0.04)}, keep=keep, AB=0.075, BC=0.3)
     miss = math.asin((0.075 + low) / 0.3) - math.radians(5.0)
-    assert found["ec"] == pytest.approx(low, abs=1e-9)
-    assert f"misses its upper limit by {miss:.3g} rad at the nearest" in found["message"]
+    assert result["ec"] == pytest.approx(low, abs=1e-9)
+    assert f"misses its upper limit by {miss:.3g} rad at the nearest" in result["message"]
     machine = dx.Machine(ec=15, AB=75, BC=300, omega0=60, units="mm, deg, rpm")
     limits = {("absmax", "a_C"): (None, 1), "max_pressure_angle": (None, 90)}
-    told = machine.optimize(minimize="time_ratio", over={"ec": (1000 * low, 40)}, keep=limits)
-    assert "absmax a_C misses its upper limit by" in told["message"]
-    assert told["message"].count("mm") == 2
-    told = machine.optimize(
+    message = machine.optimize(minimize="time_ratio", over={"ec": (1000 * low, 40)}, keep=limits)
+    assert "absmax a_C misses its upper limit by" in message["message"]
+    assert message["message"].count("mm") == 2
+    message = machine.optimize(
         minimize="time_ratio", over={"ec": (1000 * low, 40)}, keep={"stroke": (1500, None)}
     )
-    assert "stroke misses its lower limit by 1.35e+03 mm at" in told["message"]
+    assert "stroke misses its lower limit by 1.35e+03 mm at" in message["message"]
 
 
 def test_pareto_front():
-    found = dx.optimize(
+    result = dx.optimize(
         minimize=("absmax", "a_C"), maximize="time_ratio", over={"ec": (0, 0.1), "BC": (0.25, 0.5)}, points=5,
         AB=0.125, omega0=157.08,
     )  # fmt: skip
-    peak, ratio = found["value"][("absmax", "a_C")], found["value"]["time_ratio"]
+    peak, ratio = result["value"][("absmax", "a_C")], result["value"]["time_ratio"]
     assert len(peak) == 5
     order = np.argsort(peak)
     assert (np.diff(ratio[order]) > 0).all()  # none is beaten
-    for ec, BC, value, T in zip(found["ec"], found["BC"], peak, ratio, strict=True):
+    for ec, BC, value, T in zip(result["ec"], result["BC"], peak, ratio, strict=True):
         assert dx.peak("a_C", ec=ec, BC=BC, AB=0.125, omega0=157.08)["value"] == pytest.approx(
             value, rel=1e-9
         )
@@ -219,42 +219,42 @@ def test_pareto_front():
 @pytest.mark.thorough
 def test_pareto_front_of_three():
     """What the third objective can have is not what the best of the first leaves of it."""
-    found = dx.optimize(
+    result = dx.optimize(
         maximize=(("absmax", "a_C"), "time_ratio"), minimize="max_pressure_angle",
         over={"ec": (0, 0.2), "BC": (0.33, 0.5)}, keep={"margin": (0.005, None)}, points=3,
         AB=0.125, omega0=157.08, starts=1,
     )  # fmt: skip
-    lean = found["value"]["max_pressure_angle"]
+    lean = result["value"]["max_pressure_angle"]
     assert lean.min() == pytest.approx(np.arcsin(0.125 / 0.5), rel=1e-9)  # in line, with the longest rod
     assert lean.max() > 1.3
     assert len(lean) >= 3
-    gains = np.stack([found["value"][("absmax", "a_C")] / 1e4, found["value"]["time_ratio"], -lean], axis=1)
+    gains = np.stack([result["value"][("absmax", "a_C")] / 1e4, result["value"]["time_ratio"], -lean], axis=1)
     for one in gains:
         assert not ((gains >= one).all(axis=1) & (gains > one + 1e-6).any(axis=1)).any()
-    assert f"{len(lean)} designs" in found["message"]
+    assert f"{len(lean)} designs" in result["message"]
 
 
 def test_how_far_a_design_is_from_turning():
-    found = dx.optimize(maximize="stroke", over={"ec": (0.23, 0.25)}, AB=0.125, BC=0.35)
-    assert found["status"] == 1
-    assert "the crank turns, by 0.005 m at the nearest, ec = 0.23" in found["message"]
+    result = dx.optimize(maximize="stroke", over={"ec": (0.23, 0.25)}, AB=0.125, BC=0.35)
+    assert result["status"] == 1
+    assert "the crank turns, by 0.005 m at the nearest, ec = 0.23" in result["message"]
     near = dx.optimize(maximize=("absmax", "a_C"), over={"ec": (0, 0.25)}, keep={"margin": (1e-9, None)}, **A)
     assert "ec = 0.224999999" in near["message"]
 
 
 @pytest.mark.parametrize(
-    ("over", "keep", "told"),
+    ("over", "keep", "message"),
     [
         ({"ec": (0.2, 0.3), "AB": (0.05, 0.4)}, {}, "misses 0, from which on the crank turns, by 0.05 m"),
         ({"ec": (-0.3, 0.2), "AB": (0.05, 0.4)}, {"margin": (0.2, None)}, "misses its lower limit by 0.05 m"),
     ],
 )
-def test_bounds_within_which_nothing_turns_are_told_without_a_search(over, keep, told, monkeypatch):
+def test_bounds_within_which_nothing_turns_are_told_without_a_search(over, keep, message, monkeypatch):
     monkeypatch.setattr("desaxe.design.optimisation.one_objective.LocalSearch", None)
     for goal in (("absmax", "a_C"), ["stroke", ("absmax", "a_C")]):
-        found = dx.optimize(minimize=goal, over=over, keep=keep, BC=0.2, omega0=10.0)
-        assert np.all(found["status"] == 1)
-        assert told in found["message"]
+        result = dx.optimize(minimize=goal, over=over, keep=keep, BC=0.2, omega0=10.0)
+        assert np.all(result["status"] == 1)
+        assert message in result["message"]
 
 
 def test_where_an_objective_has_no_slope_nothing_is_called_an_optimum():
@@ -263,16 +263,16 @@ def test_where_an_objective_has_no_slope_nothing_is_called_an_optimum():
     def steep(design):
         return abs(design["ec"] - 0.013) + abs(design["AB"] - 0.118), {"ec": math.nan, "AB": math.nan}
 
-    found = dx.optimize(minimize=steep, over={"ec": (-0.1, 0.1), "AB": (0.1, 0.13)}, starts=2, BC=0.35)
-    assert found["status"] == 4
-    assert "the optimality conditions hold to 1 only" in found["message"]
-    assert found["value"] < 1e-3  # without slopes, from the best of the scan
+    result = dx.optimize(minimize=steep, over={"ec": (-0.1, 0.1), "AB": (0.1, 0.13)}, starts=2, BC=0.35)
+    assert result["status"] == 4
+    assert "the optimality conditions hold to 1 only" in result["message"]
+    assert result["value"] < 1e-3  # without slopes, from the best of the scan
 
 
 def test_an_optimum_on_a_bound_that_does_not_hold_it_back_is_not_inside():
-    found = dx.optimize(minimize="time_ratio", over={"ec": (0, 0.1)}, AB=0.075, BC=0.3)
-    assert found["message"] == "optimum at ec = 0 m, on the bound of ec (lower), which does not hold it back"
-    assert found["active"] == {}
+    result = dx.optimize(minimize="time_ratio", over={"ec": (0, 0.1)}, AB=0.075, BC=0.3)
+    assert result["message"] == "optimum at ec = 0 m, on the bound of ec (lower), which does not hold it back"
+    assert result["active"] == {}
 
 
 @pytest.mark.parametrize(
@@ -286,9 +286,9 @@ def test_an_optimum_on_a_bound_that_does_not_hold_it_back_is_not_inside():
 def test_designs_of_a_tiny_margin(goal, over, keep, expected):
     """The stroke grows with the crank; no message says that a design misses a limit that it keeps."""
     ec = 1e-7 if expected["status"] == 0 else 0.0
-    found = dx.optimize(**{goal: "stroke"}, over=over, keep=keep, BC=0.25, ec=ec)
-    assert {name: found[name] for name in expected} == pytest.approx(expected, abs=1e-12)
-    assert "by -" not in found["message"]
+    result = dx.optimize(**{goal: "stroke"}, over=over, keep=keep, BC=0.25, ec=ec)
+    assert {name: result[name] for name in expected} == pytest.approx(expected, abs=1e-12)
+    assert "by -" not in result["message"]
 
 
 def finite(low, high):
@@ -314,15 +314,15 @@ def finite(low, high):
     ],
 )
 def test_an_objective_without_a_value_is_no_design(goal, low, high, status, ec, words):
-    found = dx.optimize(**{goal: finite(low, high)}, over={"ec": (0, 0.1)}, AB=0.1, BC=0.3)
-    assert found["status"] == status
-    assert words in found["message"]
-    assert "two peaks" not in found["message"]
+    result = dx.optimize(**{goal: finite(low, high)}, over={"ec": (0, 0.1)}, AB=0.1, BC=0.3)
+    assert result["status"] == status
+    assert words in result["message"]
+    assert "two peaks" not in result["message"]
     if ec is None:
-        assert np.isnan(found["value"])
+        assert np.isnan(result["value"])
         return
-    assert found["ec"] == pytest.approx(ec, abs=1e-8)
-    assert found["value"] == pytest.approx((found["ec"] - 0.02) ** 2, abs=1e-15)
+    assert result["ec"] == pytest.approx(ec, abs=1e-8)
+    assert result["value"] == pytest.approx((result["ec"] - 0.02) ** 2, abs=1e-15)
 
 
 def test_a_function_as_an_active_limit_and_as_one_of_several_objectives():
@@ -336,10 +336,10 @@ def test_a_function_as_an_active_limit_and_as_one_of_several_objectives():
         return advance / (2.0 * math.pi - advance)
 
     problem = {"maximize": "time_ratio", "over": {"ec": (0, 0.1)}, "AB": 0.1, "BC": 0.3}
-    found = dx.optimize(keep={double: (None, 0.1)}, **problem)
-    assert (found["status"], found["active"]) == (0, {double: "upper"})
+    result = dx.optimize(keep={double: (None, 0.1)}, **problem)
+    assert (result["status"], result["active"]) == (0, {double: "upper"})
     gain = (ratio(0.05 + 1e-6) - ratio(0.05 - 1e-6)) / 4e-6
-    assert found["multipliers"][double] == pytest.approx(gain, rel=1e-8)
-    assert "held back by double (upper)" in found["message"]
+    assert result["multipliers"][double] == pytest.approx(gain, rel=1e-8)
+    assert "held back by double (upper)" in result["message"]
     front = dx.optimize(minimize=double, points=3, **problem)
     assert front["value"][double] == pytest.approx(2.0 * front["ec"], abs=1e-12)

@@ -23,13 +23,13 @@ class FreeBodies:
 
     def alpha(self, theta, square, torque):
         """The crank's acceleration at omega^2 = square; with friction by both signs of the guide's force."""
-        found = []
+        result = []
         for pressed in (1.0, -1.0) if self.p["mu"] else (0.0,):
             alpha, normal = self._solve(theta, square, torque, pressed)
             if not pressed or normal * pressed >= 0.0:
-                found.append(alpha)
-        assert found
-        return found[0]
+                result.append(alpha)
+        assert result
+        return result[0]
 
     def _solve(self, theta, square, torque, pressed):
         p, branch = self.p, self.branch
@@ -81,15 +81,15 @@ class FreeBodies:
             torque = motor(theta, omega)
             return [2.0 * self.alpha(theta, y[0], torque), 1.0 / omega, torque]
 
-        y, wanted = np.array([omega_start**2, 0.0, 0.0]), []
+        y, expected = np.array([omega_start**2, 0.0, 0.0]), []
         for a, b in itertools.pairwise(edges):
             places = [t for t in at if min(a, b) <= t <= max(a, b)]
-            found = solve_ivp(
+            result = solve_ivp(
                 rate, (a, b), y, method="DOP853", rtol=2.3e-14, atol=1e-16, t_eval=[*places, b], max_step=0.3
             )
-            y = found.y[:, -1]
-            wanted += np.sqrt(found.y[0, : len(places)]).tolist()
-        return y[0], abs(y[1]), y[2], self.way * np.array(wanted)
+            y = result.y[:, -1]
+            expected += np.sqrt(result.y[0, : len(places)]).tolist()
+        return y[0], abs(y[1]), y[2], self.way * np.array(expected)
 
 
 def turn(count, way=1.0):

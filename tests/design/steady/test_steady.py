@@ -23,14 +23,14 @@ def machine(rng):
     AB = rng.uniform(0.03, 0.1)
     BC = AB * rng.uniform(2.2, 5.0)
     some = rng.integers(0, 2, 5)
-    found = {
+    result = {
         "ec": rng.uniform(-0.4, 0.4) * (BC - AB) * some[0], "AB": AB, "BC": BC,
         "m_crank": rng.uniform(0, 5), "m_rod": rng.uniform(0.1, 3), "m_slider": rng.uniform(0.5, 10),
         "I_crank": rng.uniform(0.01, 1), "I_rod": rng.uniform(0, 0.02), "g_Y": -9.81 * some[1],
         "g_X": rng.uniform(-9, 9) * some[2], "F_X": rng.uniform(-100, 100) * some[3],
         "F_Y": rng.uniform(-100, 100), "r_rod": rng.uniform(0, 1) * BC, "r_crank": rng.uniform(-1, 1) * AB,
     }  # fmt: skip
-    return found | ({"mu": rng.uniform(0.01, 0.3)} if some[4] else {})
+    return result | ({"mu": rng.uniform(0.01, 0.3)} if some[4] else {})
 
 
 def with_load(rng, inputs, branch):
@@ -67,13 +67,13 @@ def motor(rng, way):
     kind = rng.integers(0, 4)
     if kind == 0:
         gear = rng.uniform(1, 10)
-        found = dx.kloss(size / gear, rng.uniform(0.1, 0.5), way * top * gear, gear)
-        return found, lambda theta, omega: found(omega)
+        result = dx.kloss(size / gear, rng.uniform(0.1, 0.5), way * top * gear, gear)
+        return result, lambda theta, omega: result(omega)
     if kind == 1:
         speeds = way * np.linspace(0, top, 5)[:: int(way)]
         torques = (way * np.array([1.2, 1.4, 1.6, 1.0, 0.0]) * size * rng.uniform(0.8, 1.2, 5))[:: int(way)]
-        found = dx.over_omega(speeds, torques, kind=rng.choice(["linear", "smooth"]))
-        return found, lambda theta, omega: found(omega)
+        result = dx.over_omega(speeds, torques, kind=rng.choice(["linear", "smooth"]))
+        return result, lambda theta, omega: result(omega)
     if kind == 2:
         return (lambda omega: way * size * (1.2 - abs(omega) / top)), (
             lambda theta, omega: way * size * (1.2 - abs(omega) / top)
@@ -96,9 +96,9 @@ def drawn(seed):
     return call, FreeBodies(branch, way, **raw, J=J), plain
 
 
-def edges_of(call, found):
+def edges_of(call, result):
     """Even edges and the kinks of the load over the period, in the way of turning."""
-    way, period = np.sign(found["theta"][-1]), abs(found["theta"][-1])
+    way, period = np.sign(result["theta"][-1]), abs(result["theta"][-1])
     loads = [call["F_Y"]] if callable(call["F_Y"]) else []
     lengths = [np.array([call[n]]) for n in ("ec", "AB", "BC")]
     kinks = meeting_angles(loads, period, lengths, call["branch"])
@@ -107,8 +107,8 @@ def edges_of(call, found):
     return every[np.append(True, np.diff(every) > 1e-12)][:: int(way)]
 
 
-def motions(found):
-    return [one for one in (found, *found["others"]) if one["status"] == 0]
+def motions(result):
+    return [one for one in (result, *result["others"]) if one["status"] == 0]
 
 
 @pytest.mark.sampled
@@ -116,9 +116,9 @@ def test_a_period_later_the_free_bodies_are_where_they_were():
     seen = 0
     for seed in (*range(cases(4, 14, 300)), NARROW):
         call, bodies, torque = drawn(seed)
-        found = dx.steady(**call)
-        assert found["status"] == 0 or seed != NARROW
-        for one in motions(found):
+        result = dx.steady(**call)
+        assert result["status"] == 0 or seed != NARROW
+        for one in motions(result):
             places = np.array([17, 100, 222, 333])
             theta, omega = one["theta"][places], one["omega"][places]
             square, period, work, there = bodies.period(
@@ -178,21 +178,21 @@ def bare(net):
 @pytest.mark.parametrize("load", [3.0, 39.9])
 def test_the_stable_speed_of_an_induction_motor_and_its_multiplier(load):
     motor = dx.kloss(40.0, 0.2, 30.0)
-    found = bare(lambda omega: motor(omega) - load)
+    result = bare(lambda omega: motor(omega) - load)
     ratio = 40.0 / load
     slip = 0.2 * (ratio - sqrt(ratio**2 - 1))
     speed = 30.0 * (1 - slip)
-    assert found["omega_mean"] == pytest.approx(speed, rel=1e-11 if load < 39.9 else 1e-9)
-    assert found["stable"]
+    assert result["omega_mean"] == pytest.approx(speed, rel=1e-11 if load < 39.9 else 1e-9)
+    assert result["stable"]
     steep = -2 * 40 * 0.2 * (0.04 - slip * slip) / (0.04 + slip * slip) ** 2 / 30.0
-    assert found["multiplier"] == pytest.approx(exp(2 * pi * steep / speed), rel=1e-9)
-    assert not found["others"]
+    assert result["multiplier"] == pytest.approx(exp(2 * pi * steep / speed), rel=1e-9)
+    assert not result["others"]
 
 
 def test_other_stable_speeds_are_listed_and_unstable_ones_are_not():
-    found = bare(lambda omega: -0.01 * (omega - 10.0) * (omega - 20.0) * (omega - 30.0))
-    (other,) = found["others"]
-    for one, speed, steep in ((found, 30.0, -2.0), (other, 10.0, -2.0)):
+    result = bare(lambda omega: -0.01 * (omega - 10.0) * (omega - 20.0) * (omega - 30.0))
+    (other,) = result["others"]
+    for one, speed, steep in ((result, 30.0, -2.0), (other, 10.0, -2.0)):
         assert one["omega_mean"] == pytest.approx(speed, rel=1e-10)
         assert one["multiplier"] == pytest.approx(exp(2 * pi * steep / speed), rel=1e-8)
         assert one["stable"]
@@ -200,16 +200,16 @@ def test_other_stable_speeds_are_listed_and_unstable_ones_are_not():
 
 def test_the_motion_of_simulate_settles_there():
     press = {**PRESS, "F_Y": dx.over_Y([0.15, 0.2, 0.25], [-4000, -2000, 0], [3000, 0, 0]), "mu": 0.1}
-    found = dx.steady(torque=MOTOR, flywheel_inertia=3.0, **press)
+    result = dx.steady(torque=MOTOR, flywheel_inertia=3.0, **press)
     heavier = {**press, "I_crank": press["I_crank"] + 3.0}
-    start = {"theta0": 0.0, "omega_start": found["omega"][0]}
+    start = {"theta0": 0.0, "omega_start": result["omega"][0]}
     motion = dx.simulate(
-        torque=MOTOR, t_end=1.2 * found["period"], rtol=1e-12, until=2 * pi, **start, **heavier
+        torque=MOTOR, t_end=1.2 * result["period"], rtol=1e-12, until=2 * pi, **start, **heavier
     )
-    assert motion["t"][-1] == pytest.approx(found["period"], rel=1e-9)
-    assert motion["omega"][-1] == pytest.approx(found["omega"][0], rel=1e-9)
+    assert motion["t"][-1] == pytest.approx(result["period"], rel=1e-9)
+    assert motion["omega"][-1] == pytest.approx(result["omega"][0], rel=1e-9)
     far = dx.simulate(torque=MOTOR, t_end=5.0, rtol=1e-12, omega_start=5.0, until=2 * pi * 8, **heavier)
-    assert far["omega"][-1] == pytest.approx(found["omega"][0], rel=1e-9)
+    assert far["omega"][-1] == pytest.approx(result["omega"][0], rel=1e-9)
 
 
 def test_arrays_are_the_designs_one_by_one():
@@ -235,18 +235,18 @@ def test_arrays_are_the_designs_one_by_one():
 def test_the_way_of_turning_may_be_an_array():
     """A torque that has no way of its own, over a plane of designs: each turns as its speed says."""
     call = {"torque": lambda omega: 60.0 * np.sign(omega) - 2.0 * omega, **PRESS, "I_crank": [2.0, 3.0]}
-    found = dx.steady(omega0=[[1.0], [-1.0]], **call)
-    assert np.sign(found["omega_mean"]).tolist() == [[1.0, 1.0], [-1.0, -1.0]]
-    assert found["omega_mean"][1, 0] == pytest.approx(
+    result = dx.steady(omega0=[[1.0], [-1.0]], **call)
+    assert np.sign(result["omega_mean"]).tolist() == [[1.0, 1.0], [-1.0, -1.0]]
+    assert result["omega_mean"][1, 0] == pytest.approx(
         dx.steady(omega0=-1.0, **{**call, "I_crank": 2.0})["omega_mean"]
     )
 
 
 def test_bad_designs_of_an_array_leave_the_others_alone():
-    found = dx.steady(torque=MOTOR, **{**PRESS, "AB": [0.05, np.nan, 0.3]})
-    assert found["status"].tolist() == [0, 4, 1]
-    assert np.isnan(found["period"]).tolist() == [False, True, True]
-    assert "cannot turn" in found["message"][2]
+    result = dx.steady(torque=MOTOR, **{**PRESS, "AB": [0.05, np.nan, 0.3]})
+    assert result["status"].tolist() == [0, 4, 1]
+    assert np.isnan(result["period"]).tolist() == [False, True, True]
+    assert "cannot turn" in result["message"][2]
 
 
 AGAINST = {**PRESS, "F_Y": dx.over_Y([0.15, 0.25], [-200, -200], [0, 0])}  # 3.2 N m in the mean
@@ -273,37 +273,37 @@ TOLD = "; the loads themselves drive the crank, 240 J a period: check their sign
     ],
 )
 def test_without_a_steady_state_the_message_says_why(torque, inputs, said):
-    found = dx.steady(torque=torque, **inputs)
-    assert found["status"] == 1
-    assert re.search(said, found["message"])
-    assert np.isnan([found[key] for key in KEYS]).all()
-    assert np.isnan(found["omega"]).all()
-    assert np.isnan(found["flywheel_inertia"]) == ("fluctuation" in inputs)
+    result = dx.steady(torque=torque, **inputs)
+    assert result["status"] == 1
+    assert re.search(said, result["message"])
+    assert np.isnan([result[key] for key in KEYS]).all()
+    assert np.isnan(result["omega"]).all()
+    assert np.isnan(result["flywheel_inertia"]) == ("fluctuation" in inputs)
 
 
 def test_an_unstable_motion_alone_is_no_steady_state():
-    found = dx.steady(torque=lambda omega: 10.0 * (omega - 20.0), flywheel_inertia=5.0, **PRESS)
-    assert found["status"] == 1
-    assert found["message"] == "no steady state: below some 20 rad/s it slows down, above it runs away"
-    assert not found["others"]
+    result = dx.steady(torque=lambda omega: 10.0 * (omega - 20.0), flywheel_inertia=5.0, **PRESS)
+    assert result["status"] == 1
+    assert result["message"] == "no steady state: below some 20 rad/s it slows down, above it runs away"
+    assert not result["others"]
 
 
 def test_a_number_finds_a_speed_where_friction_grows_with_it():
     inputs = {"ec": 0.01, "AB": 0.05, "BC": 0.2, "m_slider": 20.0, "I_crank": 2.0, "mu": 0.2}
-    found = dx.steady(torque=5.0, **inputs)
-    assert found["status"] == 0
-    assert found["work"] == pytest.approx(10.0 * pi, rel=1e-12)
-    mean = dx.drive(omega0=found["omega_mean"], fluctuation=1.0, **inputs)["torque_mean"]
+    result = dx.steady(torque=5.0, **inputs)
+    assert result["status"] == 0
+    assert result["work"] == pytest.approx(10.0 * pi, rel=1e-12)
+    mean = dx.drive(omega0=result["omega_mean"], fluctuation=1.0, **inputs)["torque_mean"]
     assert mean == pytest.approx(5.0, rel=0.05)
 
 
 def test_the_flywheel_for_a_wanted_fluctuation():
     at = 0.01
-    found = dx.steady(torque=MOTOR, fluctuation=at, **PRESS)
-    assert found["fluctuation"] == pytest.approx(at, rel=1e-12)
-    again = dx.steady(torque=MOTOR, flywheel_inertia=found["flywheel_inertia"], **PRESS)
-    assert again["period"] == pytest.approx(found["period"], rel=1e-12)
-    by = found["gradient"]["flywheel_inertia"]
+    result = dx.steady(torque=MOTOR, fluctuation=at, **PRESS)
+    assert result["fluctuation"] == pytest.approx(at, rel=1e-12)
+    again = dx.steady(torque=MOTOR, flywheel_inertia=result["flywheel_inertia"], **PRESS)
+    assert again["period"] == pytest.approx(result["period"], rel=1e-12)
+    by = result["gradient"]["flywheel_inertia"]
     h = 1e-3 * at
     near = dx.steady(torque=MOTOR, fluctuation=at + h * STEPS, **PRESS)["flywheel_inertia"]
     assert by["fluctuation"] == pytest.approx(WEIGHTS @ near / h, rel=1e-7)
@@ -313,17 +313,17 @@ def test_the_flywheel_for_a_wanted_fluctuation():
 
 
 def test_a_machine_that_stores_enough_needs_no_flywheel():
-    found = dx.steady(torque=MOTOR, fluctuation=0.5, **PRESS)
-    assert found["flywheel_inertia"] == 0.0
-    assert found["fluctuation"] < 0.5
+    result = dx.steady(torque=MOTOR, fluctuation=0.5, **PRESS)
+    assert result["flywheel_inertia"] == 0.0
+    assert result["fluctuation"] < 0.5
 
 
 def test_motors_of_a_machine_are_in_its_units():
     press = dx.Machine(units="mm, rpm", ec=10, AB=50, BC=200, m_slider=20.0, I_crank=2.0)
-    found = press.steady(torque=press.kloss(40.0, 0.15, 1500, gear=12), flywheel_inertia=3.0)
+    result = press.steady(torque=press.kloss(40.0, 0.15, 1500, gear=12), flywheel_inertia=3.0)
     plain = dx.steady(torque=dx.kloss("40 N m", 0.15, "1500 rpm", 12), flywheel_inertia=3.0, **press)
-    assert found["omega_mean"] == pytest.approx(plain["omega_mean"] * 30 / pi, rel=1e-12)
-    by, own = (one["gradient"]["omega_mean"]["AB"] for one in (found, plain))
+    assert result["omega_mean"] == pytest.approx(plain["omega_mean"] * 30 / pi, rel=1e-12)
+    by, own = (one["gradient"]["omega_mean"]["AB"] for one in (result, plain))
     assert by == pytest.approx(own * 30 / pi / 1000, rel=1e-9)
     table = press.over_omega([0, 100, 200], [30, 40, 0], "smooth")
     assert table(100) == pytest.approx(40.0, rel=1e-12)
@@ -387,7 +387,7 @@ def same(press):
 def test_a_light_crank_settles_or_stalls_as_its_free_bodies_do(machine, motor, settles):
     """By SciPy's Radau from the motor's speed: a stiff turn forgets where it starts."""
     call, raw = machine
-    found = dx.steady(torque=dx.kloss(*motor), **call)
+    result = dx.steady(torque=dx.kloss(*motor), **call)
     bodies, (most, slip, top, gear) = FreeBodies(**raw), motor
 
     def rate(t, y):
@@ -410,11 +410,11 @@ def test_a_light_crank_settles_or_stalls_as_its_free_bodies_do(machine, motor, s
         if run.t_events[0].size:
             break
     assert (len(run.t_events[0]) == 0) == settles
-    assert found["status"] == (0 if settles else 1), found["message"]
+    assert result["status"] == (0 if settles else 1), result["message"]
     if settles:
-        assert found["period"] == pytest.approx(times[-1], rel=2e-6)
+        assert result["period"] == pytest.approx(times[-1], rel=2e-6)
     else:
-        assert "too weak, it stalls near theta" in found["message"]
+        assert "too weak, it stalls near theta" in result["message"]
 
 
 def test_simulate_takes_motors():
@@ -448,8 +448,8 @@ def test_a_torque_over_theta_of_a_machine_is_that_in_si(units):
     made = press.over_theta(np.linspace(0, turn, 13)[:-1], 8.0 + np.sin(np.linspace(0, 2 * pi, 13)[:-1]))
     plain = dx.over_theta(np.linspace(0, 2 * pi, 13)[:-1], 8.0 + np.sin(np.linspace(0, 2 * pi, 13)[:-1]))
     right = dx.steady(torque=plain, ec=0.0, AB=0.05, BC=0.2, m_slider=2.0, I_crank=0.5, mu=0.1)["omega_mean"]
-    found = press.steady(torque=made)["omega_mean"] * (pi / 30 if units else 1.0)
-    assert found == pytest.approx(right, rel=1e-12)
+    result = press.steady(torque=made)["omega_mean"] * (pi / 30 if units else 1.0)
+    assert result == pytest.approx(right, rel=1e-12)
 
 
 @pytest.mark.parametrize("name", ["F_Y", "torque"])
@@ -485,9 +485,9 @@ HALF_WAY = ([0.0, 0.06, 0.06, 0.1], [0.0, 0.0, -9e3, -9e3], [0.0] * 4)
 def test_an_extreme_of_the_speed_at_a_jump_of_the_load_moves_with_it(load):
     """Central differences of order 6: the load jumps at the slowest or at the fastest point."""
     press = {**PRESS, "flywheel_inertia": 3.0, "m_rod": 3.0, **load}
-    found = dx.steady(torque=MOTOR, **press)
+    result = dx.steady(torque=MOTOR, **press)
     for name in ("ec", "AB", "BC", "m_rod"):
         h = 1e-3 * press[name] if name != "ec" else 5e-5
         near = dx.steady(torque=MOTOR, **{**press, name: press[name] + h * STEPS})["fluctuation"]
-        slope = found["gradient"]["fluctuation"][name]
+        slope = result["gradient"]["fluctuation"][name]
         assert slope == pytest.approx(WEIGHTS @ near / h, rel=1e-6, abs=1e-9), name

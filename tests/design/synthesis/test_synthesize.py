@@ -14,11 +14,11 @@ import desaxe as dx
 
 
 def has(design, stroke, ratio, rel=1e-13):
-    found = dx.events(**design)
-    assert found["stroke"] == pytest.approx(stroke, rel=rel)
-    assert found["time_ratio"] == pytest.approx(ratio, rel=rel)
-    assert found["status"] in (0, 2)
-    return found
+    result = dx.events(**design)
+    assert result["stroke"] == pytest.approx(stroke, rel=rel)
+    assert result["time_ratio"] == pytest.approx(ratio, rel=rel)
+    assert result["status"] in (0, 2)
+    return result
 
 
 @settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])  # a busy machine
@@ -26,10 +26,10 @@ def has(design, stroke, ratio, rel=1e-13):
 def test_there_and_back(AB, share, side):
     """A design's own stroke, time ratio and third wish lead back to it."""
     ec, BC = side * share * (1.0 - AB), 1.0
-    found = dx.events(ec=ec, AB=AB, BC=BC)
-    wish = {"stroke": found["stroke"], "time_ratio": found["time_ratio"], "slow_stroke": side}
-    assume(found["time_ratio"] > 1.0 + 1e-4)
-    for third, value in (("BC", BC), ("AB", AB), ("max_pressure_angle", found["max_pressure_angle"])):
+    result = dx.events(ec=ec, AB=AB, BC=BC)
+    wish = {"stroke": result["stroke"], "time_ratio": result["time_ratio"], "slow_stroke": side}
+    assume(result["time_ratio"] > 1.0 + 1e-4)
+    for third, value in (("BC", BC), ("AB", AB), ("max_pressure_angle", result["max_pressure_angle"])):
         answer = dx.synthesize(**wish, **{third: value})
         if not answer["solutions"]:  # at the least pressure angle, within rounding
             low, high = answer["limits"][third]
@@ -39,7 +39,7 @@ def test_there_and_back(AB, share, side):
         flat = third == "max_pressure_angle"  # its root is double at the least angle
         assert min(apart) < (1e-5 if flat else 1e-9)
         for design in answer["solutions"]:
-            has(design, found["stroke"], found["time_ratio"], 1e-11)
+            has(design, result["stroke"], result["time_ratio"], 1e-11)
 
 
 @pytest.mark.parametrize("third", ["BC", "AB"])
@@ -71,9 +71,9 @@ def test_the_least_pressure_angle_is_the_least():
     assert least <= min(angles)
     assert least == pytest.approx(min(angles), rel=1e-4)
     for angle in (least * (1 + 1e-6), 1.2, 1.5):
-        found = dx.synthesize(stroke=0.1, time_ratio=1.3, max_pressure_angle=angle)["solutions"]
-        assert len(found) == 2
-        for design in found:
+        result = dx.synthesize(stroke=0.1, time_ratio=1.3, max_pressure_angle=angle)["solutions"]
+        assert len(result) == 2
+        for design in result:
             assert has(design, 0.1, 1.3)["max_pressure_angle"] == pytest.approx(angle, rel=1e-12)
 
 
@@ -87,14 +87,14 @@ def test_in_line():
 
 
 def test_a_wish_out_of_reach_is_told_with_its_unit():
-    for wish, told in (
+    for wish, message in (
         ({"max_pressure_angle": "30 deg"}, r"= 0.523599 rad, .* from 0.543636 to 1.5708 rad"),
         ({"BC": "10 mm"}, r"BC = 0.01 m, .* from 0.125 to 1.66801 m"),
         ({"BC": "10 mm", "time_ratio": 1}, r"BC = 0.01 m, .* from 0.125 m on"),
     ):
-        found = dx.synthesize(**{"stroke": "250 mm", "time_ratio": 1.1, **wish})
-        assert found["status"] == 1
-        assert re.fullmatch(f"none: .*{told}", found["message"])
+        result = dx.synthesize(**{"stroke": "250 mm", "time_ratio": 1.1, **wish})
+        assert result["status"] == 1
+        assert re.fullmatch(f"none: .*{message}", result["message"])
 
 
 def test_no_time_ratio_of_three():

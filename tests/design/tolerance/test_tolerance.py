@@ -74,7 +74,7 @@ def test_a_range_and_a_tolerance_are_the_same_in_both_calls():
     assert all(box == boxes[0] for box in boxes)
     texts = ["10 mm +- 0.1", "10 mm ± 0.1 mm", "10 mm +- 1 %"]
     scatter = [dx.tolerance("a_C", ec=ec, samples=10, **rest) for ec in (*given, *texts)]
-    assert all(found == scatter[0] for found in scatter)
+    assert all(result == scatter[0] for result in scatter)
     worst = scatter[0]["worst_case"]
     assert (worst["lower"], worst["upper"]) == (boxes[0]["lower"], boxes[0]["upper"])
 
@@ -85,8 +85,10 @@ def test_a_range_and_a_tolerance_are_the_same_in_both_calls():
 def test_a_bare_pair_is_refused_with_both_spellings(call, p, pair):
     """Whatever the input and the numbers: in one call it once meant this, in the other that."""
     first, second = pair
-    told = f"{p} = {pair!r}: a pair must say what it means: dx.plus_minus({first!r}, {second!r}) is a value"
-    with pytest.raises(ValueError, match=re.escape(told)) as raised:
+    message = (
+        f"{p} = {pair!r}: a pair must say what it means: dx.plus_minus({first!r}, {second!r}) is a value"
+    )
+    with pytest.raises(ValueError, match=re.escape(message)) as raised:
         call("T_in", **{"theta": 1.0, "ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": 20.0, p: pair})
     assert f"dx.between({first!r}, {second!r}) both ends of a range" in str(raised.value)
 
@@ -125,27 +127,27 @@ def test_a_curved_quantity():
 
     Y - Y_o = -k theta^2/2: mean -k s^2/2, standard deviation k s^2/sqrt(2) of a normal theta.
     """
-    found = dx.tolerance("Y", theta=plus_minus(0.0, 0.03), ec=0.0, AB=0.1, BC=0.4, samples=200_000)
+    result = dx.tolerance("Y", theta=plus_minus(0.0, 0.03), ec=0.0, AB=0.1, BC=0.4, samples=200_000)
     k, s = 0.1 * (1 + 0.25), 0.01
-    assert found["first_order"]["std"] == 0.0
-    drawn = found["monte_carlo"]
+    assert result["first_order"]["std"] == 0.0
+    drawn = result["monte_carlo"]
     assert abs(drawn["mean"] - (0.5 - k * s**2 / 2)) < 4 * drawn["mean_error"]
     assert drawn["std"] == pytest.approx(k * s**2 / math.sqrt(2), rel=0.02)
-    assert found["agreement"]["mean"] < -100
-    assert "(0 to first order: see monte_carlo), 95 %" in repr(found)
-    assert "driven by nothing; theta 0 to first order: see monte_carlo" in repr(found)
-    assert found["monte_carlo"]["largest"] <= 0.5
+    assert result["agreement"]["mean"] < -100
+    assert "(0 to first order: see monte_carlo), 95 %" in repr(result)
+    assert "driven by nothing; theta 0 to first order: see monte_carlo" in repr(result)
+    assert result["monte_carlo"]["largest"] <= 0.5
 
 
 def test_uniform_and_given_distributions():
     """The margin is linear: its variance is the sum of theirs."""
     given = {"ec": stats.gamma(4.0, scale=0.001), "AB": plus_minus(0.1, 0.003), "BC": 0.4}
-    found = dx.tolerance("margin", distribution="uniform", samples=50_000, **given)
-    wanted = math.sqrt(4.0 * 0.001**2 + 0.003**2 / 3)
-    assert found["first_order"]["std"] == pytest.approx(wanted, rel=1e-12)
-    assert found["first_order"]["mean"] == pytest.approx(0.296)
-    assert found["monte_carlo"]["std"] == pytest.approx(wanted, rel=0.02)
-    assert found["worst_case"] is None
+    result = dx.tolerance("margin", distribution="uniform", samples=50_000, **given)
+    expected = math.sqrt(4.0 * 0.001**2 + 0.003**2 / 3)
+    assert result["first_order"]["std"] == pytest.approx(expected, rel=1e-12)
+    assert result["first_order"]["mean"] == pytest.approx(0.296)
+    assert result["monte_carlo"]["std"] == pytest.approx(expected, rel=0.02)
+    assert result["worst_case"] is None
     uniform = dx.tolerance("margin", distribution="uniform", ec=0.01, AB=plus_minus(0.1, 0.003), BC=0.4)
     assert uniform["monte_carlo"]["largest"] <= uniform["worst_case"]["upper"] == pytest.approx(0.293)
 
@@ -169,10 +171,10 @@ def test_of_a_design_and_of_forces():
 
 
 def test_samples_without_a_value_are_counted():
-    found = dx.tolerance("Y", theta=math.pi / 2, ec=plus_minus(0.22, 0.03), AB=0.125, BC=0.35, samples=2000)
-    assert found["status"] == 2
+    result = dx.tolerance("Y", theta=math.pi / 2, ec=plus_minus(0.22, 0.03), AB=0.125, BC=0.35, samples=2000)
+    assert result["status"] == 2
     share = stats.norm.sf(0.225, 0.22, 0.01)
-    assert found["monte_carlo"]["infeasible"] == pytest.approx(share, abs=0.04)
+    assert result["monte_carlo"]["infeasible"] == pytest.approx(share, abs=0.04)
 
 
 @pytest.mark.parametrize(
@@ -188,13 +190,13 @@ def test_a_kink_is_told(name, ec, kink):
     """In line the time ratio is 1 on both sides of a kink; its worst case is at the ends all the same."""
     lengths = {"AB": 0.125, "BC": 0.35}
     speed = {"omega0": 157.08} if isinstance(name, tuple) else {}
-    found = dx.tolerance(name, ec=plus_minus(ec, 3e-3), samples=500, **lengths, **speed)
-    assert found["status"] == (3 if kink else 0)
-    assert np.isfinite(found["monte_carlo"]["std"])
+    result = dx.tolerance(name, ec=plus_minus(ec, 3e-3), samples=500, **lengths, **speed)
+    assert result["status"] == (3 if kink else 0)
+    assert np.isfinite(result["monte_carlo"]["std"])
     if name == "time_ratio":
         end = dx.events(ec=ec + 3e-3, **lengths)["time_ratio"]
-        assert found["worst_case"]["upper"] == pytest.approx(end, rel=1e-12)
-        assert found["worst_case"]["lower"] == pytest.approx(
+        assert result["worst_case"]["upper"] == pytest.approx(end, rel=1e-12)
+        assert result["worst_case"]["lower"] == pytest.approx(
             1.0 if kink else dx.events(ec=ec - 3e-3, **lengths)["time_ratio"], rel=1e-12
         )
 
@@ -224,8 +226,8 @@ def test_the_reason_is_the_right_one(what, monkeypatch):
         return {measures[0]: Peak(value(ec), {"ec": slope(ec)})}
 
     monkeypatch.setattr("desaxe.design.tolerance.function.measured", measured)
-    found = dx.tolerance("stroke", ec=plus_minus(0.1, 1e-3), AB=0.125, BC=0.35, samples=50)
-    assert found["status"] == status
+    result = dx.tolerance("stroke", ec=plus_minus(0.1, 1e-3), AB=0.125, BC=0.35, samples=50)
+    assert result["status"] == status
 
 
 class Peak(NamedTuple):
@@ -238,15 +240,15 @@ class Peak(NamedTuple):
 def test_a_peak_at_a_limit_angle_has_no_derivative():
     rocker = {"AB": 0.125, "BC": 0.35, "theta": 1.0}
     ec = plus_minus(0.3, 1e-4)
-    found = dx.tolerance(("max", "phi"), ec=ec, AB=0.125, BC=0.35, samples=50)
+    result = dx.tolerance(("max", "phi"), ec=ec, AB=0.125, BC=0.35, samples=50)
     assert dx.peak("phi", kind="max", ec=0.3, AB=0.125, BC=0.35)["status"] == 2
-    assert found["status"] == 5
+    assert result["status"] == 5
     assert dx.tolerance("phi", ec=plus_minus(0.2, 1e-4), samples=50, **rocker)["status"] == 0
 
 
 def test_nothing_is_told_of_what_has_no_value():
-    found = dx.tolerance("Y", theta=math.pi / 2, ec=plus_minus(0.3, 1e-3), AB=0.125, BC=0.35, samples=10)
-    assert (found["status"], found["monte_carlo"]["infeasible"]) == (1, 1.0)
+    result = dx.tolerance("Y", theta=math.pi / 2, ec=plus_minus(0.3, 1e-3), AB=0.125, BC=0.35, samples=10)
+    assert (result["status"], result["monte_carlo"]["infeasible"]) == (1, 1.0)
 
 
 def test_one_input_and_seeds():
@@ -276,7 +278,7 @@ def test_an_input_that_a_quantity_does_not_depend_on_counts_for_nothing():
 def test_distributions_are_in_the_units_of_the_machine(name, shape, unit):
     """Against the loop closure in mm; the numbers of a distribution are degrees, or rpm."""
     machine = dx.Machine(ec=10, AB=50, BC=200, omega0=300, units="mm, deg, rpm")
-    found = machine.tolerance("V_C", samples=2000, **{"theta": 60, name: shape})
+    result = machine.tolerance("V_C", samples=2000, **{"theta": 60, name: shape})
 
     def speed(theta, omega):
         s, c = np.sin(theta), np.cos(theta)
@@ -285,15 +287,15 @@ def test_distributions_are_in_the_units_of_the_machine(name, shape, unit):
 
     at = {"theta": 60.0 * math.pi / 180, "omega0": 300.0 * math.pi / 30}
     at[name] = shape.mean() * unit
-    assert found["value"] == pytest.approx(speed(at["theta"], at["omega0"]), rel=1e-12)
+    assert result["value"] == pytest.approx(speed(at["theta"], at["omega0"]), rel=1e-12)
     step = {"theta": 1e-6, "omega0": 1e-3}[name]
     ends = [speed(*{**at, name: at[name] + side * step}.values()) for side in (1, -1)]
     slope = (ends[0] - ends[1]) / (2 * step) * unit
-    assert found["gradient"][name] == pytest.approx(slope, rel=1e-6)
-    assert found["first_order"]["std"] == pytest.approx(abs(slope) * shape.std(), rel=1e-6)
+    assert result["gradient"][name] == pytest.approx(slope, rel=1e-6)
+    assert result["first_order"]["std"] == pytest.approx(abs(slope) * shape.std(), rel=1e-6)
     drawn = speed(*{**at, name: shape.ppf((np.arange(20000) + 0.5) / 20000) * unit}.values())
-    assert found["monte_carlo"]["std"] == pytest.approx(drawn.std(), rel=0.06)
-    assert found["monte_carlo"]["mean"] == pytest.approx(drawn.mean(), abs=0.1 * drawn.std())
+    assert result["monte_carlo"]["std"] == pytest.approx(drawn.std(), rel=0.06)
+    assert result["monte_carlo"]["mean"] == pytest.approx(drawn.mean(), abs=0.1 * drawn.std())
 
 
 @pytest.mark.parametrize("name", ["stroke", "margin", ("absmax", "a_C"), ("rms", "a_C"), ("at", 1.0, "Y")])

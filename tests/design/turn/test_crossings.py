@@ -22,7 +22,7 @@ MOTION = [("Y", 0.31, 0), ("V_C", 0.05, 1), ("a_C", 0.0, 2), ("a_C", -0.05, 2)]
 @pytest.mark.parametrize("branch", [1, -1])
 def test_angles_share_and_derivatives(name, value, order, branch):
     value = branch * value
-    found = dx.crossings(name, value=value, branch=branch, omega0=1.0, **LENGTHS)
+    result = dx.crossings(name, value=value, branch=branch, omega0=1.0, **LENGTHS)
     with mp.workdps(40):
         lengths = {p: mpf(v) for p, v in LENGTHS.items()}
 
@@ -37,11 +37,11 @@ def test_angles_share_and_derivatives(name, value, order, branch):
             for a, b, one, two in zip(grid, grid[1:], heights, heights[1:], strict=False)
             if one * two < 0
         ]
-        assert found["count"] == len(roots) > 0
-        assert found["theta"].tolist() == pytest.approx([float(root) for root, _ in roots], abs=3e-15)
-        assert found["rising"].tolist() == [sign for _, sign in roots]
+        assert result["count"] == len(roots) > 0
+        assert result["theta"].tolist() == pytest.approx([float(root) for root, _ in roots], abs=3e-15)
+        assert result["rising"].tolist() == [sign for _, sign in roots]
         above = sum(-sign * root for root, sign in roots) + (2 * mp.pi if heights[0] > 0 else 0)
-        assert found["share"] == pytest.approx(float(above / (2 * mp.pi)), abs=1e-14)
+        assert result["share"] == pytest.approx(float(above / (2 * mp.pi)), abs=1e-14)
         h = mpf(10) ** -10
         for p in LENGTHS:
             for k, (root, _) in enumerate(roots):
@@ -50,7 +50,7 @@ def test_angles_share_and_derivatives(name, value, order, branch):
                     for s in (1, -1)
                 )
                 up, down = ends
-                assert found["gradient"][p][k] == pytest.approx(
+                assert result["gradient"][p][k] == pytest.approx(
                     float((up - down) / (2 * h)), rel=1e-8, abs=1e-9
                 )
 
@@ -60,39 +60,39 @@ def test_a_jump_of_a_load_is_a_crossing():
     die = dx.over_stroke(
         [0.0, 0.03], outward=[-800.0, 0.0], inward=[0.0, 0.0], kind="step", dead_centre="outer"
     )
-    found = dx.crossings("T_in", F_Y=die, **MACHINE)
-    (k,) = np.flatnonzero(found["side"])
-    theta = float(found["theta"][k])
+    result = dx.crossings("T_in", F_Y=die, **MACHINE)
+    (k,) = np.flatnonzero(result["side"])
+    theta = float(result["theta"][k])
     assert theta % (2.0 * np.pi) == pytest.approx(
         dx.inverse(s=0.03, **LENGTHS)["theta"].min() % (2.0 * np.pi), abs=1e-12
     )
     before, after = dx.evaluate("T_in", theta=np.array([theta - 1e-9, theta + 1e-9]), F_Y=die, **MACHINE)
     assert before * after < 0.0
-    assert found["side"][k] == found["rising"][k] == np.sign(after)
+    assert result["side"][k] == result["rising"][k] == np.sign(after)
     for p in LENGTHS:
         ends = []
         for step in (1e-6, -1e-6):
             moved = {**LENGTHS, p: LENGTHS[p] + step}
             ends.append(float(dx.inverse(s=0.03, **moved)["theta"].min()))
-        assert found["gradient"][p][k] == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-6)
+        assert result["gradient"][p][k] == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-6)
 
 
 def test_what_touches_the_value_does_not_cross_it():
     ends = dx.events(**LENGTHS)
     for value, share in ((ends["Y_outer"], 0.0), (ends["Y_inner"], 1.0)):
-        found = dx.crossings("Y", value=value, **LENGTHS)
-        assert (found["count"], found["status"]) == (0, 0)
-        assert found["share"] == pytest.approx(share, abs=1e-7)
+        result = dx.crossings("Y", value=value, **LENGTHS)
+        assert (result["count"], result["status"]) == (0, 0)
+        assert result["share"] == pytest.approx(share, abs=1e-7)
 
 
 def test_statuses_and_many_designs():
-    found = dx.crossings("V_C", ec=[0.0, 0.02, 0.02, np.nan], AB=0.1, BC=[0.3, 0.3, 0.11, 0.3], omega0=10.0)
-    assert found["status"].tolist() == [0, 0, 1, 4]
-    assert found["count"].tolist() == [2, 2, 0, 0]
-    assert found["theta"].shape == (4, 2)
-    assert np.isnan(found["theta"][2:]).all()
+    result = dx.crossings("V_C", ec=[0.0, 0.02, 0.02, np.nan], AB=0.1, BC=[0.3, 0.3, 0.11, 0.3], omega0=10.0)
+    assert result["status"].tolist() == [0, 0, 1, 4]
+    assert result["count"].tolist() == [2, 2, 0, 0]
+    assert result["theta"].shape == (4, 2)
+    assert np.isnan(result["theta"][2:]).all()
     one = dx.crossings("V_C", omega0=10.0, **LENGTHS)
-    np.testing.assert_array_equal(found["theta"][1], one["theta"])
+    np.testing.assert_array_equal(result["theta"][1], one["theta"])
     assert one["share"] == pytest.approx(dx.events(**LENGTHS)["advance_angle"] / (2.0 * np.pi), abs=1e-14)
     assert dx.crossings("omega", value=10.0, omega0=10.0, **LENGTHS)["status"] == 3
     assert dx.crossings("V_C", ec=0.0, AB=0.1, BC=0.3, omega0=10.0)["theta"] == pytest.approx(
@@ -102,18 +102,18 @@ def test_statuses_and_many_designs():
 
 def test_the_cycle_is_that_of_the_loads():
     gas = dx.over_theta(lambda theta: 100.0 * np.sin(theta / 2.0), period=4.0 * np.pi)
-    found = dx.crossings("T_in", F_Y=gas, **MACHINE)
-    assert found["theta"][-1] > 2.0 * np.pi
+    result = dx.crossings("T_in", F_Y=gas, **MACHINE)
+    assert result["theta"][-1] > 2.0 * np.pi
     turn = np.linspace(0.0, 4.0 * np.pi, 100_001)
     above = dx.evaluate("T_in", theta=turn, F_Y=gas, **MACHINE) > 0.0
-    assert found["share"] == pytest.approx(above.mean(), abs=1e-4)
-    assert found["count"] == np.count_nonzero(np.diff(above))
+    assert result["share"] == pytest.approx(above.mean(), abs=1e-4)
+    assert result["count"] == np.count_nonzero(np.diff(above))
 
 
 def test_the_units_of_a_machine():
     machine = dx.Machine(units="mm, deg, rpm", ec=20, AB=100, BC=300, omega0=100)
-    found = machine.crossings("V_C", value=500)
-    assert machine.evaluate("V_C", theta=found["theta"]) == pytest.approx([500.0, 500.0], rel=1e-12)
+    result = machine.crossings("V_C", value=500)
+    assert machine.evaluate("V_C", theta=result["theta"]) == pytest.approx([500.0, 500.0], rel=1e-12)
     with pytest.raises(TypeError, match="theta is the answer"):
         machine.crossings("V_C", theta=1)
 

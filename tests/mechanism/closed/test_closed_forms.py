@@ -33,10 +33,10 @@ def test_dead_centres_and_their_derivatives(part):
     for _ in range(cases(40, 500, 12_500)):
         *lengths, branch = design(rng)
         form = dead_centres(branch)
-        found = dict(zip(form.program.outputs, form.point(*lengths), strict=True))
+        result = dict(zip(form.program.outputs, form.point(*lengths), strict=True))
         known = truths(*lengths, branch)
         for name in (*WHOLE, *SENSITIVITIES):
-            check(name, found[name], known, lengths)
+            check(name, result[name], known, lengths)
 
 
 def check(name, value, known, lengths):
@@ -58,14 +58,14 @@ def exact_margin(ec, AB, BC):
 @pytest.mark.parametrize("branch", [1, -1])
 def test_at_a_change_point_values_are_limits_and_derivatives_infinite(branch):
     form = dead_centres(branch)
-    found = dict(zip(form.program.outputs, form.point(0.5, 1.0, 1.5), strict=True))
+    result = dict(zip(form.program.outputs, form.point(0.5, 1.0, 1.5), strict=True))
     with mp.workdps(60):
-        assert ulp_error(found["stroke"], mp.sqrt(6)) <= 1
-        assert ulp_error(found["max_pressure_angle"], mp.pi / 2) <= 1
-        assert ulp_error(found["theta_inner"], mp.pi / 2) <= 1
-    assert found["Y_inner"] == 0.0
-    assert math.isinf(found["stroke_wrt_AB"])
-    assert found["turn_status"] == 2
+        assert ulp_error(result["stroke"], mp.sqrt(6)) <= 1
+        assert ulp_error(result["max_pressure_angle"], mp.pi / 2) <= 1
+        assert ulp_error(result["theta_inner"], mp.pi / 2) <= 1
+    assert result["Y_inner"] == 0.0
+    assert math.isinf(result["stroke_wrt_AB"])
+    assert result["turn_status"] == 2
 
 
 @pytest.mark.sampled
@@ -90,22 +90,22 @@ def test_limit_angles_and_margins(part):
     form = closed_form(LIMITS)
     for _ in range(cases(50, 500, 12_500)):
         lengths = design(rng)[:3]
-        found = dict(zip(form.program.outputs, form.point(*lengths), strict=True))
+        result = dict(zip(form.program.outputs, form.point(*lengths), strict=True))
         margin = exact_margin(*lengths)
-        assert found["status"] == (2 if margin == 0 else 0 if margin > 0 else 1)
-        assert theta_intervals(*lengths) == in_intervals([found[name] for name in ANGLES])
-        check_limits(found, *lengths)
+        assert result["status"] == (2 if margin == 0 else 0 if margin > 0 else 1)
+        assert theta_intervals(*lengths) == in_intervals([result[name] for name in ANGLES])
+        check_limits(result, *lengths)
 
 
-def check_limits(found, ec, AB, BC):
+def check_limits(result, ec, AB, BC):
     """The margins, rounded once, and the limit angles."""
     margin = exact_margin(ec, AB, BC)
     with mp.workdps(400):
         exact = mp.mpf(margin.numerator) / margin.denominator
         # half an ulp may be a tie that ec alone decides
-        assert ulp_error(found["margin"], exact) <= 0.5 + 1e-9, (ec, AB, BC)
-    assert (found["link_margin"] >= 0.0) == (abs(Fraction(BC) - Fraction(AB)) >= abs(Fraction(ec)))
-    intervals = in_intervals([found[name] for name in ANGLES])
+        assert ulp_error(result["margin"], exact) <= 0.5 + 1e-9, (ec, AB, BC)
+    assert (result["link_margin"] >= 0.0) == (abs(Fraction(BC) - Fraction(AB)) >= abs(Fraction(ec)))
+    intervals = in_intervals([result[name] for name in ANGLES])
     if margin >= 0:
         assert intervals == [(0.0, 2 * math.pi)]
         return
@@ -174,8 +174,8 @@ def test_the_inverse_keeps_its_digits_next_to_a_dead_centre(long):
             y, e, a, b = map(mp.mpf, (Y, ec, AB, BC))
             side = mp.hypot(e, y)
             cosine = (side**2 + a**2 - b**2) / (2 * side * a)
-            found = [closed_form(INVERSE, branch=branch).point(*lengths) for branch in (1.0, -1.0)]
-            angles = [angle for *some, _ in found for angle in some if angle == angle]
+            result = [closed_form(INVERSE, branch=branch).point(*lengths) for branch in (1.0, -1.0)]
+            angles = [angle for *some, _ in result for angle in some if angle == angle]
             assert bool(angles) == (abs(cosine) <= 1), (Y, ec, AB, BC)
             exact = [mp.atan2(-e, y) + side * mp.acos(cosine) for side in (1, -1)] if angles else []
             for angle in angles:

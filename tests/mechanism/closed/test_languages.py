@@ -64,8 +64,8 @@ def test_limit_angles_and_the_inverse_in_every_language(to, branch, tmp_path):
         (tmp_path / file).write_text(text, encoding="utf-8")
     rows = list(designs(branch, cases(60, 400, 50_000)))
     columns = [np.array(column) for column in zip(*rows, strict=True)]
-    found = caller(to, tmp_path / f"made{language.suffix}", INPUTS, OUTPUTS)(columns)
-    for (Y, ec, AB, BC), *values in zip(rows, *found.values(), strict=True):
+    result = caller(to, tmp_path / f"made{language.suffix}", INPUTS, OUTPUTS)(columns)
+    for (Y, ec, AB, BC), *values in zip(rows, *result.values(), strict=True):
         own = dict(zip(OUTPUTS, map(float, values), strict=True))
         check_limits(own, ec, AB, BC)
         if Y and AB:

@@ -21,7 +21,7 @@ def jets(ec, AB, BC, branch):
     x = [Jet({(): arb_series([arb(v)]), (k,): arb_series([1])}, 2) for k, v in enumerate((ec, AB, BC))]
     away = x[0].times(-1 if ec < 0 else 1)
     pi = Jet({(): arb_series([arb.pi()])}, 2)
-    found = {}
+    result = {}
     for which, reach in (("outer", x[1] + x[2]), ("inner", x[2] - x[1])):
         square = reach * reach - x[0] * x[0]
         if not square.terms[()][0] > 0:
@@ -29,24 +29,24 @@ def jets(ec, AB, BC, branch):
         folds = which == "inner" and AB > BC
         height = square.sqrt()
         turn = arc_sine(x[0] * reach.inverse())
-        found[f"Y_{which}"] = height.times(-branch if folds else branch)
+        result[f"Y_{which}"] = height.times(-branch if folds else branch)
         half = (which == "outer") == (branch < 0)
-        found[f"theta_{which}"] = (pi if half else pi.times(0)) - turn.times(branch)
-        found[which] = turn
+        result[f"theta_{which}"] = (pi if half else pi.times(0)) - turn.times(branch)
+        result[which] = turn
     margin = math.fsum((BC, -AB, -abs(ec)))
     if margin > 0:
-        found["stroke"] = (found["Y_outer"] - found["Y_inner"]).times(branch)
-        beta = found["inner"] - found["outer"]
-        found["advance_angle"], found["return_angle"] = pi + beta.times(branch), pi - beta.times(branch)
+        result["stroke"] = (result["Y_outer"] - result["Y_inner"]).times(branch)
+        beta = result["inner"] - result["outer"]
+        result["advance_angle"], result["return_angle"] = pi + beta.times(branch), pi - beta.times(branch)
         size = beta.times(-1 if ec < 0 else 1)
-        found["time_ratio"] = (pi + size) * (pi - size).inverse()
+        result["time_ratio"] = (pi + size) * (pi - size).inverse()
         lean = arc_sine((x[1] + away) * x[2].inverse())
-        found["max_pressure_angle"] = lean
-        found["min_transmission_angle"] = pi.times(1) * half_of() - lean
+        result["max_pressure_angle"] = lean
+        result["min_transmission_angle"] = pi.times(1) * half_of() - lean
         if abs(ec) > AB:
-            found["min_pressure_angle"] = arc_sine((away - x[1]) * x[2].inverse())
-            found["max_transmission_angle"] = pi * half_of() - found["min_pressure_angle"]
-    return {name: jet for name, jet in found.items() if name not in ("outer", "inner")}
+            result["min_pressure_angle"] = arc_sine((away - x[1]) * x[2].inverse())
+            result["max_transmission_angle"] = pi * half_of() - result["min_pressure_angle"]
+    return {name: jet for name, jet in result.items() if name not in ("outer", "inner")}
 
 
 def half_of():

@@ -41,8 +41,8 @@ Row = TypeVar("Row", bound=Judged)
 
 def number(entry: Judged) -> str:
     """The number of a numbered equation, such as "20" or "42b"; nothing for any other entry."""
-    found = _NUMBERED.fullmatch(entry.id)
-    return found.group(1) if found else ""
+    result = _NUMBERED.fullmatch(entry.id)
+    return result.group(1) if result else ""
 
 
 def forms(entry: Judged) -> tuple[str, str]:

@@ -111,8 +111,8 @@ def _symbol(name: str) -> str:
         return rf"\mathit{{{name}}}"
     if name in ("i", "j"):
         return rf"\hat{{\mathbf{{{name}}}}}"
-    found = _NAME.fullmatch(name)
-    letter, index = found.groups() if found else (name, "")
+    result = _NAME.fullmatch(name)
+    letter, index = result.groups() if result else (name, "")
     if letter not in GREEK and len(letter) > 1:  # aG2x, FPx, IG2: the first letter carries the rest
         letter, index = letter[0], letter[1:] + index
     written = "\\" + letter if letter in GREEK else letter

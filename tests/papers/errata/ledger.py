@@ -100,8 +100,8 @@ def harm(document: str) -> tuple[Harm, ...]:
 @cache
 def sheets() -> dict[str, dict[str, Any]]:
     """The content of the ledgers' files by document letter, in alphabetical order, marks included."""
-    found = [tomllib.loads(path.read_text("utf-8")) for path in sorted(FOLDER.glob("*.toml"))]
-    return {sheet["entry"][0]["document"]: sheet for sheet in found}
+    result = [tomllib.loads(path.read_text("utf-8")) for path in sorted(FOLDER.glob("*.toml"))]
+    return {sheet["entry"][0]["document"]: sheet for sheet in result}
 
 
 @cache

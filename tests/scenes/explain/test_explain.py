@@ -92,8 +92,8 @@ def test_masses_of_nothing():
 
 def test_an_input_that_nothing_needs():
     plan = dx.explain({**CONCENTRIC, "outputs": ["phi"], "reduce": {"theta": "max"}})
-    (told,) = [one for one in plan["skipped"] if one["what"] == "omega0"]
-    assert told["why"] == "given, but no requested name depends on it"
+    (message,) = [one for one in plan["skipped"] if one["what"] == "omega0"]
+    assert message["why"] == "given, but no requested name depends on it"
 
 
 @pytest.mark.parametrize("rods", [[0.34, 0.35], [0.19, 0.35]])

@@ -22,8 +22,8 @@ def browser_path(own):
     page must not go untested.
     """
     named = os.environ.get("DESAXE_BROWSER")
-    found = [named] if named else [*filter(None, map(shutil.which, NAMES)), own]
-    path = next((path for path in found if Path(path).exists()), None)
+    result = [named] if named else [*filter(None, map(shutil.which, NAMES)), own]
+    path = next((path for path in result if Path(path).exists()), None)
     if path is None and os.environ.get("CI"):
         pytest.fail(MISSING, pytrace=False)
     return path or pytest.skip(MISSING)

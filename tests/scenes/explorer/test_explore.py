@@ -74,16 +74,16 @@ def test_up_to_five_values_are_all_compared(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("ec", "rods", "told"),
+    ("ec", "rods", "message"),
     [
         ([0.0, 0.01, 0.02, 0.03, 0.04, 0.05], 0.35, "ec = 0.01, 0.04 m"),
         ([0.0, 0.1], [0.35, 0.4, 0.45], "BC = 0.4, 0.45 m"),
         ([0.01 * k for k in range(20)], [0.35, 0.4], "16 of the values of ec; BC = 0.4 m"),
     ],
 )
-def test_values_that_are_left_out_are_told(ec, rods, told, tmp_path, capsys):
+def test_values_that_are_left_out_are_told(ec, rods, message, tmp_path, capsys):
     path = dx.explore(path=tmp_path / "a.html", **{**SIZES, "ec": ec, "BC": rods})
-    assert content_of(path)["left_out"] == told
+    assert content_of(path)["left_out"] == message
     scene = tmp_path / "a.toml"
     lengths = f"ec = {ec}\nAB = 0.125\nBC = {rods}"
     motion = "omega0 = 1\ntheta = [0, 1]"
@@ -91,7 +91,7 @@ def test_values_that_are_left_out_are_told(ec, rods, told, tmp_path, capsys):
     assert main(["explore", str(scene), "-o", str(path)]) == 0
     out, err = capsys.readouterr()
     assert out == f"{path}\n"
-    assert err == f"desaxe: not shown on the page: {told}\n"
+    assert err == f"desaxe: not shown on the page: {message}\n"
 
 
 def test_a_path_in_the_place_of_a_scene():

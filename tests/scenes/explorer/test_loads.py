@@ -20,11 +20,11 @@ def test_the_page_has_the_numbers_of_evaluate_and_saves_the_load(kind, visit, fo
     load = dx.over_theta(ANGLES, FORCES, kind=kind)
     page = visit(dx.explore(path=folder / f"{kind}.html", F_Y=load, **PRESS))
     points = [[0.3, 0.0], [1.7, 0.0], [-2.0, 30.0], [9.0, 0.0]]
-    for (theta, added), found in zip(points, page.evaluate(VALUES, points), strict=True):
+    for (theta, added), result in zip(points, page.evaluate(VALUES, points), strict=True):
         names = ["T_in", "T_in_wrt_theta", "N_C"]
         under = dx.over_theta(ANGLES, np.array(FORCES) + added, kind=kind)
         right = dx.evaluate(names, theta=theta, F_Y=under, **PRESS)
-        for value, name in zip(found, names, strict=True):
+        for value, name in zip(result, names, strict=True):
             assert math.isclose(value, right[name], rel_tol=1e-11, abs_tol=1e-9)
     saved = dx.scene(tomllib.loads(page.evaluate("window.desaxe.sceneText()")))
     assert saved.inputs["F_Y"] == load
@@ -68,10 +68,10 @@ def test_a_load_that_follows_the_slider(kind, numbers_of, folder):
         [draw.uniform(-7, 7), 0.0, draw.uniform(-0.02, 0.02), draw.choice([-50.0, 50.0])] for _ in range(40)
     ]
     points += [[1.0, 30.0, 0.01, 200.0], [0.3, 0.0, 0.03, 50.0]]  # the last has no inner dead centre
-    for (theta, added, ec, omega0), found in zip(points, page.evaluate(UNDER, points), strict=True):
+    for (theta, added, ec, omega0), result in zip(points, page.evaluate(UNDER, points), strict=True):
         under = SLIDER[kind]([v + added for v in OUTWARD], [v + added for v in INWARD])
         right = dx.evaluate(NAMES, theta=theta, F_Y=under, **{**PRESS, "ec": ec, "omega0": omega0})
-        for value, name in zip(found, NAMES, strict=True):
+        for value, name in zip(result, NAMES, strict=True):
             shown = math.nan if value is None else value
             assert shown == pytest.approx(right[name], rel=1e-10, abs=1e-8, nan_ok=True), (theta, ec, name)
     lacks = page.evaluate("window.desaxe.statusWords({ ...window.desaxe.state.designs[0], ec: 0.03 }, 0.3)")

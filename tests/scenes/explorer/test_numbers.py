@@ -68,26 +68,26 @@ def test_values_and_sensitivities(case, numbers_of, tmp_path):
     inputs = {name: value for name, value in rows[0].items() if name not in ("theta", "branch")}
     page = numbers_of(dx.explore(path=tmp_path / "page.html", branch=rows[0]["branch"], **inputs))
     names = page.evaluate("Object.keys(desaxe.content.quantities)")
-    found = page.evaluate(VALUES, rows)
+    result = page.evaluate(VALUES, rows)
     wrong = []
-    for point, row in zip(rows, found, strict=True):
-        wanted = dx.evaluate(names, **point)
+    for point, row in zip(rows, result, strict=True):
+        expected = dx.evaluate(names, **point)
         for name, text in zip(names, row, strict=True):
-            if not agrees(name, float(text.replace("Infinity", "inf")), wanted[name], point):
-                wrong.append((name, text, wanted[name], point))
+            if not agrees(name, float(text.replace("Infinity", "inf")), expected[name], point):
+                wrong.append((name, text, expected[name], point))
     assert not wrong
     assert len(rows) > 25
     assert len(names) > 100
 
 
-def agrees(name, found, wanted, point):
+def agrees(name, result, expected, point):
     """Near enough; the condition number is looked up only where it is needed."""
-    if not math.isfinite(wanted):
-        return str(found) == str(float(wanted))
-    error = abs(found - wanted)
-    if error <= BOUND * abs(wanted):
+    if not math.isfinite(expected):
+        return str(result) == str(float(expected))
+    error = abs(result - expected)
+    if error <= BOUND * abs(expected):
         return True
-    return error <= BOUND * abs(wanted) * (1 + conditions(name, "margin", OTHERS, **point))
+    return error <= BOUND * abs(expected) * (1 + conditions(name, "margin", OTHERS, **point))
 
 
 def test_the_check_sees_an_error():
@@ -118,10 +118,10 @@ def test_gaps_and_kind_are_those_of_feasibility(lengths, standing):
     """A gap between two samples is found, too."""
     design = {**lengths, "omega0": 1.0, "alpha": 0.0}
     gaps, kind = standing.evaluate("(d) => [desaxe.gaps(d), desaxe.kindOf(d)]", design)
-    wanted = dx.feasibility(**lengths)
-    assert kind == wanted["kind"]
-    turn, arcs = 2 * math.pi, wanted["theta_intervals"]
-    if wanted["can_turn"]:
+    expected = dx.feasibility(**lengths)
+    assert kind == expected["kind"]
+    turn, arcs = 2 * math.pi, expected["theta_intervals"]
+    if expected["can_turn"]:
         assert gaps == []
     elif not arcs:
         assert gaps == [[0.0, turn]]

@@ -37,9 +37,9 @@ def test_a_slider_by_keyboard_and_typed_numbers(visit, one_design):
     page.fill("#number-omega0", "3000")
     page.fill("#number-alpha", "-7.5")
     settle(page)
-    found = design(page)
-    assert (found["AB"], found["alpha"]) == (0.0623, -7.5)
-    assert found["omega0"] == pytest.approx(100 * math.pi, rel=1e-15)
+    result = design(page)
+    assert (result["AB"], result["alpha"]) == (0.0623, -7.5)
+    assert result["omega0"] == pytest.approx(100 * math.pi, rel=1e-15)
 
 
 @pytest.mark.thorough
@@ -125,8 +125,8 @@ def test_typing_what_is_there_changes_nothing(visit, several_designs, folder):
 )  # fmt: skip
 def test_a_field_means_what_python_means(unit, text, si, standing):
     name = {"m": "ec", "rad/s": "omega0", "kg*m^2": "I_rod"}[unit]
-    wanted = 80.6e-6 if name == "I_rod" else in_si(INPUTS[name], si)
-    assert standing.evaluate("([u, t]) => desaxe.toSI(u, t)", [unit, text]) == wanted
+    expected = 80.6e-6 if name == "I_rod" else in_si(INPUTS[name], si)
+    assert standing.evaluate("([u, t]) => desaxe.toSI(u, t)", [unit, text]) == expected
 
 
 @pytest.mark.thorough

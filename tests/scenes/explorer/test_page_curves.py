@@ -78,13 +78,13 @@ def test_a_gap_narrower_than_a_sample_is_no_line(visit, one_design):
 def test_a_curve_is_where_evaluate_has_a_value(ec, standing):
     lengths = {**design(standing), "ec": ec}
     curve = standing.evaluate("(d) => desaxe.curve('V_C', d)", lengths)
-    told = [
+    message = [
         (value is not None, math.isfinite(dx.evaluate("V_C", theta=theta, **lengths)))
         for theta, value in zip(curve["theta"], curve["value"], strict=True)
         if not next_to_a_limit(theta, lengths)
     ]
-    assert len(told) >= len(curve["theta"]) - 4
-    assert [ours for ours, _ in told] == [python for _, python in told]
+    assert len(message) >= len(curve["theta"]) - 4
+    assert [ours for ours, _ in message] == [python for _, python in message]
     assert curve["theta"] == sorted(curve["theta"])
 
 
@@ -107,8 +107,8 @@ def test_several_designs_are_compared(visit, several_designs):
     titles = [mark.get_attribute("title") for mark in page.locator("#designs .badge").all()]
     assert titles == ["Turns fully", "Turns fully", "Cannot turn fully"]
     assert sorted(drawn_lines(page)) == [1, 1, 2]
-    wanted = [dx.evaluate("V_C", theta=math.pi / 3, **design(page, k)) for k in range(3)]
-    assert reading(page, "V_C") == [pytest.approx(v, rel=1e-7) for v in wanted]
+    expected = [dx.evaluate("V_C", theta=math.pi / 3, **design(page, k)) for k in range(3)]
+    assert reading(page, "V_C") == [pytest.approx(v, rel=1e-7) for v in expected]
     page.click("[data-take='2']")
     assert verdict(page)[0] == "Cannot turn fully"
     page.click("[data-drop='1']")

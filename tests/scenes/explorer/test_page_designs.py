@@ -36,13 +36,13 @@ def test_the_figures_of_a_design(branch, numbers_of, folder):
     inputs = {"AB": 0.125, "BC": 0.35, "omega0": 157.0, "branch": branch}
     page = numbers_of(dx.explore(path=folder / "figures.html", ec=[0.0, 0.1, -0.2], **inputs))
     for k, ec in enumerate((0.0, 0.1, -0.2)):
-        found = page.evaluate(f"desaxe.turnOf(desaxe.state.designs[{k}])")
-        wanted = dx.events(ec=ec, AB=0.125, BC=0.35, branch=branch)
-        assert found["stroke"] == pytest.approx(wanted["stroke"], rel=1e-14)
-        assert found["ratio"] == pytest.approx(wanted["time_ratio"], rel=1e-13)
-        assert found["pressure"] == pytest.approx(wanted["max_pressure_angle"], rel=1e-13)
+        result = page.evaluate(f"desaxe.turnOf(desaxe.state.designs[{k}])")
+        expected = dx.events(ec=ec, AB=0.125, BC=0.35, branch=branch)
+        assert result["stroke"] == pytest.approx(expected["stroke"], rel=1e-14)
+        assert result["ratio"] == pytest.approx(expected["time_ratio"], rel=1e-13)
+        assert result["pressure"] == pytest.approx(expected["max_pressure_angle"], rel=1e-13)
         for which in ("outer", "inner"):
-            apart = (found[which] - wanted[f"theta_{which}"] + math.pi) % (2 * math.pi) - math.pi
+            apart = (result[which] - expected[f"theta_{which}"] + math.pi) % (2 * math.pi) - math.pi
             assert abs(apart) < 1e-12
         top = "((d) => desaxe.peakOf('a_C', d, desaxe.curve('a_C', d)))"
         peak = page.evaluate(f"{top}(desaxe.state.designs[{k}])")
@@ -66,8 +66,8 @@ def test_tables_and_files_in_other_units(visit, several_designs):
     theta, inputs = page.evaluate("desaxe.state.theta"), design(page)
     scale = {"Y": 1e3, "a_C": 1e3, "phi": 180 / math.pi, "omega_BC": 30 / math.pi, "a_C_wrt_ec": 1.0}
     for name, times in scale.items():
-        wanted = times * dx.evaluate(name, theta=theta, **inputs)
-        assert reading(page, name)[0] == pytest.approx(wanted, rel=1e-7)
+        expected = times * dx.evaluate(name, theta=theta, **inputs)
+        assert reading(page, name)[0] == pytest.approx(expected, rel=1e-7)
     units = page.locator("#readings td.unit").all_inner_texts()
     assert units == ["mm/s²", "1/s²", "mm", "mm/s", "°", "rpm", "rad/s²"]
     rows = list(csv.reader(io.StringIO(page.evaluate("desaxe.valuesText()"))))
@@ -120,8 +120,8 @@ def test_loads_can_be_set(visit, folder):
     assert (given["F_Y"], given["mu"], given["m_rod"]) == (-50.0, 0.1, 0.0)
     theta = page.evaluate("desaxe.state.theta")
     for name in ("T_in", "F_A_X", "M_shaking"):
-        found = page.evaluate("([n, d, t]) => desaxe.valueAt(n, d, t)", [name, given, theta])
-        assert found == pytest.approx(dx.evaluate(name, theta=theta, **given), rel=1e-12)
+        result = page.evaluate("([n, d, t]) => desaxe.valueAt(n, d, t)", [name, given, theta])
+        assert result == pytest.approx(dx.evaluate(name, theta=theta, **given), rel=1e-12)
 
 
 @pytest.mark.thorough
@@ -152,8 +152,8 @@ def test_the_scene_of_a_feeder_comes_back(visit, folder, tmp_path):
     page.click("#more summary")
     page.fill("#number-m_slider", "2")
     settle(page)
-    wanted = dx.evaluate("T_in", theta=page.evaluate("desaxe.state.theta"), **design(page))
-    assert reading(page, "T_in")[0] == pytest.approx(wanted, rel=1e-7)
+    expected = dx.evaluate("T_in", theta=page.evaluate("desaxe.state.theta"), **design(page))
+    assert reading(page, "T_in")[0] == pytest.approx(expected, rel=1e-7)
 
 
 @pytest.mark.parametrize("where", ["scene", "session"])
@@ -176,9 +176,9 @@ def test_the_saved_scene_has_the_quantities_of_the_user(where, numbers_of, folde
     text = numbers_of(path).evaluate("desaxe.state.shown = ['both'], desaxe.sceneText()")
     (tmp_path / "saved.toml").write_text(text, encoding="utf-8")
     values = dx.scene(tmp_path / "saved.toml").run().dataset.both
-    found = dx.evaluate(["N_C", "V_C", "power_in"], theta=values.theta.values, **machine)
+    result = dx.evaluate(["N_C", "V_C", "power_in"], theta=values.theta.values, **machine)
     assert values.values == pytest.approx(
-        0.08 * abs(found["N_C"] * found["V_C"]) + found["power_in"], rel=1e-12
+        0.08 * abs(result["N_C"] * result["V_C"]) + result["power_in"], rel=1e-12
     )
 
 

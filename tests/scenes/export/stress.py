@@ -48,28 +48,28 @@ def _exact(branch, index, name):
     return truth(name, **row), conditions(name, **row)
 
 
-def _errors(found, branch, largest):
+def _errors(result, branch, largest):
     """(index of the point, name, value, exact, ulp, bound) of each value that is promised anything."""
     places = [index for index, row in enumerate(rows(branch)) if abs(row["theta"]) <= largest]
     for place, index in enumerate(places):
-        for name in found:
+        for name in result:
             exact, condition = _exact(branch, index, name)
-            value, bound = float(found[name][place]), 8.0 * (1 + condition)
+            value, bound = float(result[name][place]), 8.0 * (1 + condition)
             if not (mpmath.isnan(exact) or bound >= NOTHING_LEFT or abs(exact) > LARGEST / 2):
                 yield index, name, value, exact, ulp_error(value, exact), bound
 
 
-def broken(found, branch, largest=math.inf):
+def broken(result, branch, largest=math.inf):
     """The points and names at which values break the promise of `standard`."""
     return [
         (name, value, mpmath.nstr(exact, 17), rows(branch)[index])
-        for index, name, value, exact, error, bound in _errors(found, branch, largest)
+        for index, name, value, exact, error, bound in _errors(result, branch, largest)
         if error > bound
     ]
 
 
-def shares(found, branch, largest=math.inf):
+def shares(result, branch, largest=math.inf):
     """(family, error as a share of what is promised) of each value."""
     families = [family for family in FAMILIES for row in points(family, EACH, 11) if row["branch"] == branch]
-    for index, _, _, _, error, bound in _errors(found, branch, largest):
+    for index, _, _, _, error, bound in _errors(result, branch, largest):
         yield families[index], error / bound

@@ -40,10 +40,10 @@ def test_the_promise_is_kept(build, sources):
     branch, source = sources
     loaded = library(source, *build)
     given = columns(branch)
-    found = array_values(loaded, "press", given, len(NAMES))
-    assert not broken(dict(zip(NAMES, found, strict=True)), branch)
+    result = array_values(loaded, "press", given, len(NAMES))
+    assert not broken(dict(zip(NAMES, result, strict=True)), branch)
     ones = [point_values(loaded, "press", row, len(NAMES))[1] for row in zip(*given, strict=True)]
-    np.testing.assert_array_equal(np.array(ones).T, found)
+    np.testing.assert_array_equal(np.array(ones).T, result)
 
 
 def test_the_header_says_which_results_have_values(tmp_path):
@@ -69,11 +69,11 @@ def test_the_header_says_which_results_have_values(tmp_path):
         bad = [{"F_Y": math.inf}, {"alpha": -1e3}, {}, {}][kind]
         row = {**given, "theta": theta, "mu": mu, **bad}
         columns = {name: [value, given[name]] for name, value in row.items()}
-        found = dx.evaluate([*names, "status"], **columns, **lengths, m_slider=1.0)
+        result = dx.evaluate([*names, "status"], **columns, **lengths, m_slider=1.0)
         order = ("theta", "omega0", "alpha", "F_Y", "mu")
         status, values = point_values(loaded, "press", [row[name] for name in order], 3)
-        assert status == found["status"][0]
-        np.testing.assert_allclose(values, [found[name][0] for name in names], rtol=1e-12)
+        assert status == result["status"][0]
+        np.testing.assert_allclose(values, [result[name][0] for name in names], rtol=1e-12)
         seen.setdefault(status, set()).add(tuple(np.isfinite(values).tolist()))
     assert seen.pop(0) == {(True, True, True)}
     assert seen.pop(3) == {(True, False, False)}
@@ -113,8 +113,8 @@ def test_status(tmp_path):
     ]  # fmt: skip
     for change, status in trials:
         row = [(good | change)[name] for name in INPUTS]
-        got, values = point_values(loaded, "press", row, len(NAMES))
-        assert got == status
+        result, values = point_values(loaded, "press", row, len(NAMES))
+        assert result == status
         assert status == 0 or math.isnan(values[NAMES.index("V_C")])
 
 
@@ -122,11 +122,11 @@ def test_names_and_units(sources):
     loaded = library(sources[1])
 
     def texts(table):
-        found, items = [], (ctypes.c_char_p * 20).in_dll(loaded, f"press_{table}")
+        result, items = [], (ctypes.c_char_p * 20).in_dll(loaded, f"press_{table}")
         for item in items:
             if item is None:
-                return found
-            found.append(item.decode())
+                return result
+            result.append(item.decode())
         return None
 
     assert texts("inputs") == list(INPUTS)
@@ -137,8 +137,8 @@ def test_names_and_units(sources):
 
 def is_well_conditioned(there):
     """True unless a dead centre or change point is so close that an ulp of the angle changes the rates."""
-    found = dx.evaluate(["Y_wrt_theta", "Y_wrt_theta_theta"], **there)
-    return abs(found["Y_wrt_theta"]) > 0.05 * there["AB"] > 0.001 * abs(found["Y_wrt_theta_theta"])
+    result = dx.evaluate(["Y_wrt_theta", "Y_wrt_theta_theta"], **there)
+    return abs(result["Y_wrt_theta"]) > 0.05 * there["AB"] > 0.001 * abs(result["Y_wrt_theta_theta"])
 
 
 def test_inverse(sources):
@@ -150,16 +150,16 @@ def test_inverse(sources):
         Y = dx.evaluate("Y", theta=row["theta"], branch=branch, **lengths)
         if not math.isfinite(Y) or max(map(abs, lengths.values())) > 1e100:
             continue
-        wanted = dx.inverse(Y=Y, V_C=0.3, a_C=-2.0, branch=branch, **lengths)
+        expected = dx.inverse(Y=Y, V_C=0.3, a_C=-2.0, branch=branch, **lengths)
         given = np.array([row[name] for name in INPUTS])
         theta, omega, alpha = (np.empty(2) for _ in range(3))
         status = loaded.press_inverse(
             *map(ctypes.c_double, (Y, 0.3, -2.0)), *map(pointer, (given, theta, omega, alpha))
         )
-        if status == wanted["status"]:  # at a dead centre, a last bit decides
-            np.testing.assert_allclose(theta, wanted["theta"], rtol=1e-6, atol=1e-7)
+        if status == expected["status"]:  # at a dead centre, a last bit decides
+            np.testing.assert_allclose(theta, expected["theta"], rtol=1e-6, atol=1e-7)
         else:
-            assert {status, wanted["status"]} <= {0, 1, 2}
+            assert {status, expected["status"]} <= {0, 1, 2}
             continue
         for angle, rate, other in zip(theta, omega, alpha, strict=True):
             there = {**lengths, "theta": angle, "branch": branch}
@@ -181,11 +181,11 @@ def test_limits(sources):
         given = np.array([0.0, ec, AB, BC, 0.0, 0.0])
         angles = np.empty(4)
         status = loaded.press_limits(pointer(given), pointer(angles))
-        wanted = dx.feasibility(ec=ec, AB=AB, BC=BC)
-        flat = [angle for interval in wanted["theta_intervals"] for angle in interval]
+        expected = dx.feasibility(ec=ec, AB=AB, BC=BC)
+        flat = [angle for interval in expected["theta_intervals"] for angle in interval]
         assert angles.tolist()[: len(flat)] == pytest.approx(flat, rel=4e-15)
         assert np.isnan(angles[len(flat) :]).all()
-        assert status == wanted["status"]
+        assert status == expected["status"]
     bad = np.array([0.0, 0.0, -1.0, 1.0, 0.0, 0.0])
     assert loaded.press_limits(pointer(bad), pointer(angles)) == 4
 
@@ -271,12 +271,12 @@ def test_values_of_other_scenes(name, tmp_path):
     fixed = {n: x for n, x in content.inputs.items() if n not in axes}
     outputs = list(content.outputs)
     status, one = point_values(loaded, "made", [given[n][0] for n in axes], len(outputs))
-    wanted = dx.evaluate([*outputs, "status"], **given, **fixed, accuracy=content.accuracy)
-    assert status == np.ravel(wanted["status"])[0]
+    expected = dx.evaluate([*outputs, "status"], **given, **fixed, accuracy=content.accuracy)
+    assert status == np.ravel(expected["status"])[0]
     limit = 0 if name == "extended" else 1e-12
     for place, output in enumerate(outputs):
-        np.testing.assert_allclose(one[place], np.ravel(wanted[output])[0], rtol=limit)
+        np.testing.assert_allclose(one[place], np.ravel(expected[output])[0], rtol=limit)
     if axes:
-        found = array_values(loaded, "made", [given[n] for n in axes], len(outputs))
-        for values, output in zip(found, outputs, strict=True):
-            np.testing.assert_allclose(values, wanted[output], rtol=limit, err_msg=output)
+        result = array_values(loaded, "made", [given[n] for n in axes], len(outputs))
+        for values, output in zip(result, outputs, strict=True):
+            np.testing.assert_allclose(values, expected[output], rtol=limit, err_msg=output)

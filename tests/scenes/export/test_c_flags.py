@@ -23,11 +23,11 @@ WORDS = [
 def contents():
     """Name -> scene: the examples, the shapes that the tests of C and of words have, all inputs open."""
     examples = [path for path in EXAMPLES.glob("*.toml") if "outputs" in path.read_text(encoding="utf-8")]
-    found = {path.stem: path for path in examples} | test_c.SCENES
+    result = {path.stem: path for path in examples} | test_c.SCENES
     shapes = {name: {"quantities": {}, **more} for name, more in test_words.SCENES.items()}
-    found |= {name: test_words.scene(**more) for name, more in shapes.items() if "over" not in name}
-    found |= {f"open {branch}": scene(branch) for branch in (1, -1)}
-    return found | {"words": test_words.scene(["a_C", *WORDS])}
+    result |= {name: test_words.scene(**more) for name, more in shapes.items() if "over" not in name}
+    result |= {f"open {branch}": scene(branch) for branch in (1, -1)}
+    return result | {"words": test_words.scene(["a_C", *WORDS])}
 
 
 @pytest.fixture(scope="module")

@@ -41,10 +41,10 @@ class Press:
         return pointer(np.array([math.nan, ec, BC, math.nan, m_slider, F_Y, *open_mu]))
 
     def alpha(self, torque, theta, omega, *inputs):
-        found = DOUBLE(7.0)
+        result = DOUBLE(7.0)
         given = map(DOUBLE, (torque, theta, omega))
-        status = self.loaded.press_alpha(*given, self.row(*inputs), ctypes.byref(found))
-        return status, found.value
+        status = self.loaded.press_alpha(*given, self.row(*inputs), ctypes.byref(result))
+        return status, result.value
 
     def step(self, h, torque, theta, omega, *inputs):
         state = DOUBLE(theta), DOUBLE(omega)
@@ -88,7 +88,7 @@ def test_the_torque_of_the_acceleration_is_the_torque(mu, branch, tmp_path):
 def test_order_4(tmp_path):
     """Half the step, a sixteenth of the error, beside `simulate`."""
     press, row = Press(tmp_path), (0.01, 0.1, 0.4, -20.0)
-    found = dx.simulate(
+    result = dx.simulate(
         torque=1.5,
         t_end=0.2,
         theta0=0.3,
@@ -99,8 +99,8 @@ def test_order_4(tmp_path):
         F_Y=-20.0,
         g_Y=-9.81,
     )
-    wanted = np.array([found["theta"][-1], found["omega"][-1]])
-    errors = [np.abs(press.run(0.2, n, 1.5, 0.3, 20.0, *row) - wanted) for n in (400, 800, 1600)]
+    expected = np.array([result["theta"][-1], result["omega"][-1]])
+    errors = [np.abs(press.run(0.2, n, 1.5, 0.3, 20.0, *row) - expected) for n in (400, 800, 1600)]
     assert (errors[2] < 1e-6).all()
     ratios = [*(errors[0] / errors[1]), *(errors[1] / errors[2])]
     assert min(ratios) > 12
@@ -127,10 +127,10 @@ def test_a_turn_inside_a_step(tmp_path):
     """A load that drives the crank back through its standstill: friction changes its side there."""
     press, row = Press(tmp_path, [0.1, 0.2]), (0.01, 0.1, 0.4, -60.0, 0.1)
     given = {**LENGTHS, **MASSES, "F_X": 30.0, "F_Y": -60.0, "g_Y": -9.81, "mu": 0.1}
-    found = dx.simulate(torque=0.0, t_end=0.04, theta0=1.0, omega_start=-8.0, **given)
-    assert [event.kind for event in found["events"]].count("standstill") == 1
-    wanted = pytest.approx((found["theta"][-1], found["omega"][-1]), rel=1e-6)
-    assert press.run(0.04, 41, 0.0, 1.0, -8.0, *row) == wanted
+    result = dx.simulate(torque=0.0, t_end=0.04, theta0=1.0, omega_start=-8.0, **given)
+    assert [event.kind for event in result["events"]].count("standstill") == 1
+    expected = pytest.approx((result["theta"][-1], result["omega"][-1]), rel=1e-6)
+    assert press.run(0.04, 41, 0.0, 1.0, -8.0, *row) == expected
 
 
 @pytest.mark.parametrize("mu", [0.0, 0.2])
@@ -144,9 +144,9 @@ def test_an_error_leaves_the_state(mu, tmp_path):
     }  # fmt: skip
     for status, calls in bad.items():
         for h, torque, theta, omega, *row in calls:
-            found = press.step(h, torque, theta, omega, *row)
-            assert found[0] == status
-            np.testing.assert_array_equal(found[1:], (theta, omega))
+            result = press.step(h, torque, theta, omega, *row)
+            assert result[0] == status
+            np.testing.assert_array_equal(result[1:], (theta, omega))
     theta, omega = press.step(0.0, 1.0, 0.5, 1.0, *good)[1:]
     assert (theta, omega) == (0.5, 1.0)
 

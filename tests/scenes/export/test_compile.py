@@ -113,10 +113,10 @@ def text_of(scene):
     return text
 
 
-def same(found, right):
+def same(result, right):
     """Compare results to rounding: the library runs fewer lines, in another order."""
     scale = np.nanmax(np.abs(right), initial=0.0)
-    np.testing.assert_allclose(found, right, rtol=1e-13, atol=1e-14 * scale)
+    np.testing.assert_allclose(result, right, rtol=1e-13, atol=1e-14 * scale)
 
 
 def inputs_of(scene):
@@ -129,20 +129,20 @@ def inputs_of(scene):
 @pytest.mark.parametrize("name", SCENES)
 def test_a_module_alone_gives_what_desaxe_gives(name, alone):
     """A run, arrays, a point, and one function for each output, for the @njit functions of others."""
-    points, found = points_of(SCENES[name]), alone[name]
+    points, result = points_of(SCENES[name]), alone[name]
     dataset = dx.scene(SCENES[name]).run().dataset
-    assert set(found["run"]) == set(dataset.data_vars) - {"margin"}
-    for output, values in found["run"].items():
+    assert set(result["run"]) == set(dataset.data_vars) - {"margin"}
+    for output, values in result["run"].items():
         assert np.shape(values) == dataset[output].shape
         same(values, dataset[output])
-    names, fixed = list(found["number"]), inputs_of(SCENES[name])
+    names, fixed = list(result["number"]), inputs_of(SCENES[name])
     many = dx.evaluate(names, **fixed, **points)
     one = dx.evaluate(names, **fixed, **{n: v[0] for n, v in points.items()})
     for output in names:
-        same(found["arrays"][output], many[output])
+        same(result["arrays"][output], many[output])
     for way in ("point", "scalars"):
-        np.testing.assert_allclose(found[way], [float(one[n]) for n in names], rtol=1e-13)
-    assert [float(found["number"][n]) for n in names] == found["point"]
+        np.testing.assert_allclose(result[way], [float(one[n]) for n in names], rtol=1e-13)
+    assert [float(result["number"][n]) for n in names] == result["point"]
 
 
 def test_a_function_of_ones_own_calls_them(tmp_path):
@@ -156,9 +156,11 @@ def test_a_function_of_ones_own_calls_them(tmp_path):
         return a(angle, mass) + b(1, mass)  # a whole number is a number, too
 
     names, fixed = ["T_in", "N_C"], inputs_of(SCENES["forces"])
-    wanted = [dx.evaluate(n, theta=t, m_slider=0.5, **fixed) for n, t in zip(names, (0.3, 1.0), strict=True)]
+    expected = [
+        dx.evaluate(n, theta=t, m_slider=0.5, **fixed) for n, t in zip(names, (0.3, 1.0), strict=True)
+    ]
     assert module.INPUTS == ("theta", "m_slider")
-    assert work(0.5, 0.3) == pytest.approx(sum(wanted), rel=1e-13)
+    assert work(0.5, 0.3) == pytest.approx(sum(expected), rel=1e-13)
     assert np.isnan(a(np.inf, 0.5))
 
 
@@ -218,11 +220,13 @@ def test_peaks_of_a_scene(tmp_path):
         ("peak_absmax_V_C", "absmax", "V_C"),
     ):
         function = getattr(module, name)
-        for found, ec in ((function(), ecs), (function(ec=near, threads=1), near)):
-            wanted = dx.peak(quantity, ec=ec, kind=kind, **design)
-            np.testing.assert_allclose(found["value"], wanted["value"], rtol=1e-13)
-            np.testing.assert_allclose(found["value_wrt_ec"], wanted["gradient"]["ec"], rtol=1e-7, atol=1e-6)
-            assert not found["status"].any()
+        for result, ec in ((function(), ecs), (function(ec=near, threads=1), near)):
+            expected = dx.peak(quantity, ec=ec, kind=kind, **design)
+            np.testing.assert_allclose(result["value"], expected["value"], rtol=1e-13)
+            np.testing.assert_allclose(
+                result["value_wrt_ec"], expected["gradient"]["ec"], rtol=1e-7, atol=1e-6
+            )
+            assert not result["status"].any()
     with pytest.raises(ValueError, match=r"'ec': 0.23.*cannot turn fully"):
         module.peak_absmax_a_C(ec=[0.0, 0.23])
     text = (tmp_path / "peak_kernels.py").read_text(encoding="utf-8")
@@ -237,21 +241,21 @@ def test_reductions_skip_nan_take_the_first_of_equals_and_keep_any_scale(tmp_pat
         [1e200, -2e200, 1e200, 0.0], [1e-200, 3e-200, 0.0, 2e-200], [1e16, 1.0, -1e16, 1.0],
     ])  # fmt: skip
     places = np.array([0.5, 1.5, 2.5, 3.5])
-    found = module.reductions("x", rows, "theta", places, ("max", "min", "absmax", "mean", "rms"))
+    result = module.reductions("x", rows, "theta", places, ("max", "min", "absmax", "mean", "rms"))
     for k, row in enumerate(rows.tolist()):
         good = [(value, place) for value, place in zip(row, places, strict=True) if value == value]
-        assert found["x_skipped"][k] == len(row) - len(good)
+        assert result["x_skipped"][k] == len(row) - len(good)
         for kind, score in (("max", float), ("min", lambda x: -x), ("absmax", abs)):
             value, place = max(good, key=lambda pair: score(pair[0]), default=(math.nan, math.nan))
             value = abs(value) if kind == "absmax" else value
             np.testing.assert_array_equal(
-                [found[f"x_{kind}"][k], found[f"x_{kind}_theta"][k]], [value, place]
+                [result[f"x_{kind}"][k], result[f"x_{kind}_theta"][k]], [value, place]
             )
         if good and np.isfinite([value for value, _ in good]).all():
             values = [Fraction(value) for value, _ in good]
             square = mpmath.mpf(sum(v * v for v in values).numerator) / sum(v * v for v in values).denominator
-            assert found["x_mean"][k] == pytest.approx(float(sum(values) / len(values)), rel=1e-15)
-            assert found["x_rms"][k] == pytest.approx(float(mpmath.sqrt(square / len(values))), rel=1e-15)
+            assert result["x_mean"][k] == pytest.approx(float(sum(values) / len(values)), rel=1e-15)
+            assert result["x_rms"][k] == pytest.approx(float(mpmath.sqrt(square / len(values))), rel=1e-15)
 
 
 # ---- the text ------------------------------------------------------------------------------------
@@ -335,11 +339,11 @@ def test_fixed_values_are_folded_in(tmp_path):
 def test_an_angle_of_any_size_is_taken(tmp_path):
     module = imported(dx.compile(SCENES["one_axis"], tmp_path / "kernels_reach.py"))
     angles = np.array([1.0, 1e12, 2e6, np.nan, np.inf])
-    found = module.evaluate(angles)
+    result = module.evaluate(angles)
     right = dx.evaluate(list(module.OUTPUTS), theta=angles, **inputs_of(SCENES["one_axis"]))
     for name in module.OUTPUTS:
-        np.testing.assert_allclose(found[name], right[name], rtol=1e-13)
-    assert found["status"].tolist() == [0, 0, 0, 4, 4]
+        np.testing.assert_allclose(result[name], right[name], rtol=1e-13)
+    assert result["status"].tolist() == [0, 0, 0, 4, 4]
     for text in ("60 deg", ["60 deg", "61 deg"]):
         with pytest.raises(TypeError, match="theta: expected real numbers, got <U6"):
             module.evaluate(text)
@@ -371,17 +375,17 @@ def test_run_takes_other_axes(name, tmp_path):
     """The axes of the scene are only what holds where none are given."""
     module = imported(dx.compile(SCENES[name], tmp_path / f"axes_{name}.py"))
     own, theta = module.run(), np.linspace(0.3, 2.0, 5)
-    found = module.run(theta=theta)
+    result = module.run(theta=theta)
     other = {**SCENES[name], "motion": {**SCENES[name]["motion"], "theta": theta.tolist()}}
     dataset = dx.scene(other).run().dataset
-    for key, values in found.items():
+    for key, values in result.items():
         if key in dataset:
             np.testing.assert_allclose(values, dataset[key].values, rtol=1e-12)
     one = module.run(theta=0.3)
     assert [values.shape for values in module.run().values()] == [values.shape for values in own.values()]
     if name == "grid":
-        assert found["V_C"].shape == (3, 7, 5)
-        np.testing.assert_array_equal(one["V_C"][..., 0], found["V_C"][..., 0])
+        assert result["V_C"].shape == (3, 7, 5)
+        np.testing.assert_array_equal(one["V_C"][..., 0], result["V_C"][..., 0])
         assert module.run(ec=[0.01], theta=theta)["V_C"].shape == (1, 7, 5)
         with pytest.raises(TypeError, match="ec: expected real numbers, got <U4"):
             module.run(ec="1 mm")

@@ -139,30 +139,30 @@ def test_fmpy_finds_no_problem(drive, made):
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
 def test_the_motion_is_that_of_simulate(kind, made):
     names = ["theta", "omega", *OUTPUTS[:5]]
-    found = simulated(made("torque"), kind, 0.1, 0.01, [*names, "status"], torque=1.5)
-    times = found["time"]
+    result = simulated(made("torque"), kind, 0.1, 0.01, [*names, "status"], torque=1.5)
+    times = result["time"]
     fixed = {**LENGTHS, **MASSES, **LOADS}
-    wanted = dx.simulate(
+    expected = dx.simulate(
         torque=1.5, t_end=0.1, theta0=0.3, omega_start=5.0, times=times, names=OUTPUTS[:5], **fixed
     )
     for name in names:
-        scale = np.abs(wanted[name]).max()
-        np.testing.assert_allclose(found[name], wanted[name], rtol=0, atol=1e-8 * scale, err_msg=name)
-    assert (found["status"] == 0).all()
+        scale = np.abs(expected[name]).max()
+        np.testing.assert_allclose(result[name], expected[name], rtol=0, atol=1e-8 * scale, err_msg=name)
+    assert (result["status"] == 0).all()
 
 
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
 def test_a_given_speed(kind, made):
     """The outputs are those of `evaluate` at the angle that the speed has led to."""
     names = ["theta", *OUTPUTS[:5]]
-    found = simulated(made("omega"), kind, 0.5, 0.05, names, omega=7.0, theta0=1.0)
-    theta = 1.0 + 7.0 * found["time"]
-    np.testing.assert_allclose(found["theta"], theta, rtol=1e-12)
-    wanted = dx.evaluate(
-        OUTPUTS[:5], theta=found["theta"], omega=7.0, alpha=0.0, **LENGTHS, **MASSES, **LOADS
+    result = simulated(made("omega"), kind, 0.5, 0.05, names, omega=7.0, theta0=1.0)
+    theta = 1.0 + 7.0 * result["time"]
+    np.testing.assert_allclose(result["theta"], theta, rtol=1e-12)
+    expected = dx.evaluate(
+        OUTPUTS[:5], theta=result["theta"], omega=7.0, alpha=0.0, **LENGTHS, **MASSES, **LOADS
     )
     for name in OUTPUTS[:5]:
-        np.testing.assert_allclose(found[name], wanted[name], rtol=1e-11, atol=1e-12)
+        np.testing.assert_allclose(result[name], expected[name], rtol=1e-11, atol=1e-12)
 
 
 # ---- partial derivatives --------------------------------------------------------------------------
@@ -193,10 +193,10 @@ def difference(name, by, at):
         size = 2.0 ** math.floor(math.log2(max(abs(at[by]), 1e-3)))
         steps = [2.0**-k * size for k in (9, 10, 11, 12)]
         ends = [[exact(name, **{**at, by: at[by] + side * h}) for side in (1, -1)] for h in steps]
-        found = [(up - down) / (2 * h) for (up, down), h in zip(ends, steps, strict=True)]
+        result = [(up - down) / (2 * h) for (up, down), h in zip(ends, steps, strict=True)]
         for order in range(1, len(steps)):
-            found = [(4**order * b - a) / (4**order - 1) for a, b in itertools.pairwise(found)]
-        return float(found[0])
+            result = [(4**order * b - a) / (4**order - 1) for a, b in itertools.pairwise(result)]
+        return float(result[0])
 
 
 def test_partial_derivatives(made):
@@ -219,19 +219,19 @@ def test_partial_derivatives(made):
     one.close()
 
 
-def check(found, knowns, at, starts=None):
-    for row, name in zip(found, ROWS, strict=True):
+def check(result, knowns, at, starts=None):
+    for row, name in zip(result, ROWS, strict=True):
         for value, by in zip(row, knowns, strict=True):
-            wanted = difference(name, (starts or {}).get(by, by), at)
-            size = max(1e-3, abs(wanted))
-            assert value == pytest.approx(wanted, rel=1e-12, abs=1e-12 * size), (name, by)
+            expected = difference(name, (starts or {}).get(by, by), at)
+            size = max(1e-3, abs(expected))
+            assert value == pytest.approx(expected, rel=1e-12, abs=1e-12 * size), (name, by)
 
 
 # ---- what goes wrong, and what ends ----------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
-    ("start", "told"),
+    ("start", "message"),
     [
         ({"AB": -1.0}, "AB = -1: expected a finite length >= 0"),
         ({"BC": 0.0}, "BC = 0: expected a finite length > 0"),
@@ -243,11 +243,11 @@ def check(found, knowns, at, starts=None):
         ({"m_rod": 0.0, "m_slider": 0.0, "I_crank": 0.0}, "without inertia"),
     ],
 )
-def test_a_bad_parameter_is_an_error_with_a_message(start, told, made):
+def test_a_bad_parameter_is_an_error_with_a_message(start, message, made):
     one = Instance(made("torque"), start=start)
     with pytest.raises(Exception, match="fmi2ExitInitializationMode"):
         one.fmu.exitInitializationMode()
-    assert any(told in line for line in one.log), one.log
+    assert any(message in line for line in one.log), one.log
     one.close()
 
 
@@ -256,23 +256,23 @@ def test_a_limit_angle_ends_the_simulation(kind, made):
     """At the instant at which `simulate` meets it."""
     values = {"BC": 0.045, "ec": 0.02, "theta0": 0.0, "omega_start": 8.0, "torque": 1.0}
     given = {**MASSES, **LOADS, "AB": 0.04, "BC": 0.045, "ec": 0.02}
-    wanted = dx.simulate(torque=1.0, t_end=1.0, theta0=0.0, omega_start=8.0, **given)
-    assert wanted["status"] == 2
-    found = simulated(made("torque"), kind, 1.0, 0.01, ["theta"], **values)
-    assert found["time"][-1] == pytest.approx(wanted["t"][-1], abs=1e-4)
-    assert found["theta"][-1] == pytest.approx(wanted["theta"][-1], abs=1e-6)
+    expected = dx.simulate(torque=1.0, t_end=1.0, theta0=0.0, omega_start=8.0, **given)
+    assert expected["status"] == 2
+    result = simulated(made("torque"), kind, 1.0, 0.01, ["theta"], **values)
+    assert result["time"][-1] == pytest.approx(expected["t"][-1], abs=1e-4)
+    assert result["theta"][-1] == pytest.approx(expected["theta"][-1], abs=1e-6)
 
 
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
 def test_friction_holds_the_crank(kind, made):
     values = {"mu": 0.3, "F_X": 30.0, "F_Y": 4.0, "theta0": 1.0, "omega_start": 8.0, "torque": 0.0}
     given = {**LENGTHS, **MASSES, "g_Y": -9.81, "mu": 0.3, "F_X": 30.0, "F_Y": 4.0}
-    wanted = dx.simulate(torque=0.0, t_end=0.5, theta0=1.0, omega_start=8.0, **given)
-    assert wanted["status"] == 1
-    found = simulated(made("torque"), kind, 0.5, 0.01, ["theta", "omega", "der(omega)"], **values)
-    assert found["omega"][-1] == 0.0
-    assert found["der(omega)"][-1] == 0.0
-    assert found["theta"][-1] == pytest.approx(wanted["theta"][-1], abs=1e-6)
+    expected = dx.simulate(torque=0.0, t_end=0.5, theta0=1.0, omega_start=8.0, **given)
+    assert expected["status"] == 1
+    result = simulated(made("torque"), kind, 0.5, 0.01, ["theta", "omega", "der(omega)"], **values)
+    assert result["omega"][-1] == 0.0
+    assert result["der(omega)"][-1] == 0.0
+    assert result["theta"][-1] == pytest.approx(expected["theta"][-1], abs=1e-6)
 
 
 SLIDER = {
@@ -368,9 +368,9 @@ def test_instances_in_parallel(made):
         one = Instance(place, "CoSimulation", {"torque": 1.5, "m_slider": mass}).start()
         for k in range(50):
             one.fmu.doStep(0.002 * k, 0.002)
-        found = one.get("theta", "omega")
+        result = one.get("theta", "omega")
         one.close()
-        return found
+        return result
 
     with ThreadPoolExecutor(4) as pool:
         together = list(pool.map(last, masses))
@@ -389,9 +389,9 @@ REFUSED = (
 )
 
 
-@pytest.mark.parametrize(("more", "options", "told"), REFUSED)
-def test_what_an_fmu_cannot_carry_is_refused_by_name(more, options, told, tmp_path):
-    with pytest.raises(ValueError, match=told):
+@pytest.mark.parametrize(("more", "options", "message"), REFUSED)
+def test_what_an_fmu_cannot_carry_is_refused_by_name(more, options, message, tmp_path):
+    with pytest.raises(ValueError, match=message):
         dx.compile(content(**more), tmp_path / "press.fmu", to="fmu", **options)
     assert not list(tmp_path.iterdir())
 

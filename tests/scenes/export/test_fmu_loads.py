@@ -85,12 +85,12 @@ FIRST = ("linear", "cubic", "both ways", "steps over Y", "inner", "spring")  # g
 def test_co_simulation_is_exact_across_kinks(name, torque, omega, made):
     """Over many turns, forwards, and backwards from a start that turns forwards."""
     start = {"torque": torque, "omega_start": omega}
-    found = simulated(made(name), "CoSimulation", 0.4, 0.02, ["theta", "omega"], **start)
-    wanted = moved(name, torque, omega, 0.4, times=found["time"])
-    assert abs(wanted["theta"][-1]) > 30
+    result = simulated(made(name), "CoSimulation", 0.4, 0.02, ["theta", "omega"], **start)
+    expected = moved(name, torque, omega, 0.4, times=result["time"])
+    assert abs(expected["theta"][-1]) > 30
     for each in ("theta", "omega"):
-        scale = np.abs(wanted[each]).max()
-        np.testing.assert_allclose(found[each], wanted[each], rtol=0, atol=1e-8 * scale, err_msg=each)
+        scale = np.abs(expected[each]).max()
+        np.testing.assert_allclose(result[each], expected[each], rtol=0, atol=1e-8 * scale, err_msg=each)
 
 
 def follow(place, start, t_end):
@@ -141,19 +141,19 @@ def follow(place, start, t_end):
             fmu.enterContinuousTimeMode()
             y = np.array(one.get("theta", "omega"))
     put(t, y)
-    found = one.get("theta", "omega", *OUTPUTS)
+    result = one.get("theta", "omega", *OUTPUTS)
     one.close()
-    return dict(zip(("theta", "omega", *OUTPUTS), found, strict=True)), events
+    return dict(zip(("theta", "omega", *OUTPUTS), result, strict=True)), events
 
 
 @pytest.mark.parametrize("name", ["linear", "both ways"])
 def test_kinks_are_events_of_model_exchange(name, made):
     """To 1e-8 beside `simulate`, over as many kinks as the crank passes."""
-    found, events = follow(made(name), {"torque": 1.5, "omega_start": 5.0}, 0.1)
-    wanted = moved(name, 1.5, 5.0, 0.1, times=[0.1], names=OUTPUTS)
+    result, events = follow(made(name), {"torque": 1.5, "omega_start": 5.0}, 0.1)
+    expected = moved(name, 1.5, 5.0, 0.1, times=[0.1], names=OUTPUTS)
     for each in ("theta", "omega", *OUTPUTS):
-        assert found[each] == pytest.approx(wanted[each][-1], rel=1e-8), each
-    turns = (found["theta"] - 0.3) / (2 * np.pi)
+        assert result[each] == pytest.approx(expected[each][-1], rel=1e-8), each
+    turns = (result["theta"] - 0.3) / (2 * np.pi)
     kinks = 4 if name == "linear" else 6 + 2  # on the way out and in; dead centres
     assert kinks * (turns - 1) < events <= kinks * (turns + 1)
 
@@ -161,25 +161,25 @@ def test_kinks_are_events_of_model_exchange(name, made):
 def test_model_exchange_without_tables_over_a_long_run(tmp_path):
     """The model is exact: what an importer's method errs by is its own."""
     place = dx.compile(content(outputs=OUTPUTS), tmp_path / "press.fmu", to="fmu")
-    found, events = follow(str(place), {"torque": 0.0, "omega_start": 30.0}, 2.0)
-    wanted = dx.simulate(
+    result, events = follow(str(place), {"torque": 0.0, "omega_start": 30.0}, 2.0)
+    expected = dx.simulate(
         torque=0.0, t_end=2.0, theta0=0.3, omega_start=30.0, times=[2.0], names=OUTPUTS, rtol=1e-12,
         **LENGTHS, **MASSES, **test_fmu.LOADS,
     )  # fmt: skip
     assert events == 0
-    assert found["theta"] > 70
+    assert result["theta"] > 70
     for each in ("theta", "omega", *OUTPUTS):
-        assert found[each] == pytest.approx(wanted[each][-1], rel=1e-8), each
+        assert result[each] == pytest.approx(expected[each][-1], rel=1e-8), each
 
 
 @pytest.mark.parametrize("name", ["linear", "over Y"])
 def test_a_given_speed_has_the_load_of_the_angle(name, made):
     place, names = made(name, input="omega"), ["theta", "T_in", "N_C"]
-    found = simulated(place, "CoSimulation", 2.0, 0.05, names, omega=7.0, theta0=0.1)
+    result = simulated(place, "CoSimulation", 2.0, 0.05, names, omega=7.0, theta0=0.1)
     given = {**LENGTHS, **MASSES, "g_Y": -9.81, "F_Y": load_of(name)}
-    wanted = dx.evaluate(["T_in", "N_C"], theta=found["theta"], omega=7.0, alpha=0.0, **given)
+    expected = dx.evaluate(["T_in", "N_C"], theta=result["theta"], omega=7.0, alpha=0.0, **given)
     for each in ("T_in", "N_C"):
-        np.testing.assert_allclose(found[each], wanted[each], rtol=1e-10, atol=1e-10)
+        np.testing.assert_allclose(result[each], expected[each], rtol=1e-10, atol=1e-10)
 
 
 # ---- partial derivatives --------------------------------------------------------------------------
@@ -246,9 +246,9 @@ def test_a_crank_that_neither_way_of_the_slider_lets_go_stays_at_rest(tmp_path):
     place = dx.compile(content(outputs=["V_C"], loads={"F_Y": against}), tmp_path / "press.fmu", to="fmu")
     for kind in ("CoSimulation", "ModelExchange"):
         start = {"omega_start": 0.5, "theta0": 1.0, "torque": 0.0}
-        found = simulated(str(place), kind, 0.2, 0.01, ["theta", "omega"], **start)
-        assert found["omega"][-1] == 0.0
-        assert 1.0 < found["theta"][-1] < 1.1
+        result = simulated(str(place), kind, 0.2, 0.01, ["theta", "omega"], **start)
+        assert result["omega"][-1] == 0.0
+        assert 1.0 < result["theta"][-1] < 1.1
 
 
 def test_what_an_fmu_does_not_have_is_refused_by_name(tmp_path):

@@ -49,8 +49,8 @@ def test_the_promise_is_kept_by_arrays(language, accuracy, branch, tmp_path):
 def test_a_function_of_javascript_gives_what_evaluate_does(tmp_path):
     dx.compile(scene(1), tmp_path / "press.js", to="javascript")
     point = {name: float(column[0]) for name, column in zip(INPUTS, columns(1), strict=True)}
-    found, a_C = es_module(tmp_path / "press.js", [["evaluate", point], ["a_C", *point.values()]])
-    assert a_C == found["a_C"]
+    result, a_C = es_module(tmp_path / "press.js", [["evaluate", point], ["a_C", *point.values()]])
+    assert a_C == result["a_C"]
 
 
 def test_the_promise_is_kept_by_scalars_of_numba(tmp_path):
@@ -79,10 +79,10 @@ def test_second_derivatives(module):
     import jax
 
     at = {"theta": math.pi / 2 + 1e-4, **FOLDED, "omega0": 10.0, "alpha": 0.5}
-    found = jax.hessian(lambda point: module.V_C(**point))(at)
+    result = jax.hessian(lambda point: module.V_C(**point))(at)
     for first, second, name in (("theta", "ec", "theta_ec"), ("BC", "AB", "AB_BC"), ("ec", "ec", "ec_ec")):
         exact = float(truth(f"V_C_wrt_{name}", **at))
-        assert float(found[first][second]) == pytest.approx(exact, rel=1e-12)
+        assert float(result[first][second]) == pytest.approx(exact, rel=1e-12)
     with pytest.raises(NotImplementedError, match="a_C_wrt_ec_ec has no derived derivative by ec"):
         jax.hessian(lambda ec: module.a_C_wrt_ec(1.0, ec, 0.125, 0.25, 10.0, 0.5))(0.1)
 
@@ -96,8 +96,8 @@ def test_transformations(module):
     rest = (0.01, 0.125, 0.35, 10.0, 0.5)
     slope = jax.jit(jax.vmap(jax.jacfwd(module.a_C), (0, *(None,) * 5)))(angles, *rest)
     fixed = dict(zip(INPUTS[1:], rest, strict=True))
-    wanted = dx.evaluate("a_C_wrt_theta", theta=np.array(angles), **fixed)
-    np.testing.assert_allclose(slope, wanted, rtol=1e-12, atol=1e-9)
+    expected = dx.evaluate("a_C_wrt_theta", theta=np.array(angles), **fixed)
+    np.testing.assert_allclose(slope, expected, rtol=1e-12, atol=1e-9)
     np.testing.assert_allclose(
         jax.grad(lambda t: module.Y(t, *rest).sum())(angles),
         dx.evaluate("Y_wrt_theta", theta=np.array(angles), **fixed),
@@ -109,12 +109,12 @@ def test_float32_stays_float32(module):
     rng = np.random.default_rng(2)
     at = {"theta": rng.uniform(0, 6, 500), "ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": 10.0, "alpha": 0.5}
     single = {name: np.asarray(value, np.float32) for name, value in at.items()}
-    found = module.evaluate(**single)
-    wanted = dx.evaluate(list(NAMES), **{name: np.asarray(value, float) for name, value in single.items()})
+    result = module.evaluate(**single)
+    expected = dx.evaluate(list(NAMES), **{name: np.asarray(value, float) for name, value in single.items()})
     for name in NAMES:
-        assert found[name].dtype == np.float32
-        scale = np.abs(wanted[name]).max()
-        np.testing.assert_allclose(found[name], wanted[name], rtol=2e-5, atol=4e-6 * scale)
+        assert result[name].dtype == np.float32
+        scale = np.abs(expected[name]).max()
+        np.testing.assert_allclose(result[name], expected[name], rtol=2e-5, atol=4e-6 * scale)
 
 
 def test_whole_numbers_and_bad_values(module):
@@ -177,9 +177,9 @@ def test_a_design_that_cannot_be_assembled_in_jax(tmp_path):
     dx.compile(scene(1, outputs=["V_C", "status", "margin"]), tmp_path / "press.py", to="jax")
     with jax_in_doubles():
         press = imported(tmp_path / "press.py")
-        found = press.evaluate(**dict(zip(INPUTS, (1.0, 0.02, 0.04, 0.01, 10.0, 0.0), strict=True)))
-    assert int(found["status"]) == 1
-    assert float(found["margin"]) == pytest.approx(-0.05)
+        result = press.evaluate(**dict(zip(INPUTS, (1.0, 0.02, 0.04, 0.01, 10.0, 0.0), strict=True)))
+    assert int(result["status"]) == 1
+    assert float(result["margin"]) == pytest.approx(-0.05)
 
 
 def test_an_own_quantity_is_carried(tmp_path):
@@ -194,12 +194,14 @@ def test_an_own_quantity_is_carried(tmp_path):
             "motion": {"theta": [0.0, 1.0], "omega0": 3},
         }
         at = {"theta": 0.7, "ec": 0.01, "AB": 0.04, "BC": 0.064}
-        wanted = dx.evaluate(["roll", "roll_wrt_theta"], **at)
+        expected = dx.evaluate(["roll", "roll_wrt_theta"], **at)
         numba = imported(dx.compile(content, tmp_path / "own_numba.py"))
         with jax_in_doubles():
             made = imported(dx.compile(content, tmp_path / "own_jax.py", to="jax"))
-            assert float(made.roll(0.7, 0.01)) == pytest.approx(wanted["roll"], rel=1e-14)
-            assert float(jax.grad(made.roll)(0.7, 0.01)) == pytest.approx(wanted["roll_wrt_theta"], rel=1e-13)
-        assert numba.roll(0.7, 0.01) == pytest.approx(wanted["roll"], rel=1e-14)
+            assert float(made.roll(0.7, 0.01)) == pytest.approx(expected["roll"], rel=1e-14)
+            assert float(jax.grad(made.roll)(0.7, 0.01)) == pytest.approx(
+                expected["roll_wrt_theta"], rel=1e-13
+            )
+        assert numba.roll(0.7, 0.01) == pytest.approx(expected["roll"], rel=1e-14)
     finally:
         dx.undefine("roll")

@@ -41,7 +41,7 @@ def is_taken(row):
     return all(abs(length) <= 1e60 for length in row) and row[-1] >= 1e-60
 
 
-def confirm(found, branch, way, least=0.0, taken=lambda row: True):
+def confirm(result, branch, way, least=0.0, taken=lambda row: True):
     """Every value keeps the promise; turning backwards, advance and return change places.
 
     least   smaller ones may be 0, as of XLA, which has no subnormal numbers
@@ -50,7 +50,7 @@ def confirm(found, branch, way, least=0.0, taken=lambda row: True):
     for name in NAMES:
         base, *by = name.split("_wrt_")
         own = "_wrt_".join([OTHER.get(base, base) if way < 0 else base, *by])
-        for row, value, there in zip(rows, np.asarray(found[name]).tolist(), exact, strict=True):
+        for row, value, there in zip(rows, np.asarray(result[name]).tolist(), exact, strict=True):
             if not taken(row):
                 assert math.isnan(value)
                 continue
@@ -111,11 +111,11 @@ def test_a_run_has_the_dimensions_of_a_grid(tmp_path):
     axes = {"ec": [0.0, 0.1, 5.0], "AB": [1.0, 1.5], "BC": 3.0, "theta": [0.0, 1.0, 2.0, 3.0]}
     names = ["V_C", "stroke", "return_angle", "margin"]
     module = imported(dx.compile(scene(names, **axes), tmp_path / "press_run.py"))
-    wanted = dx.scene(scene(names, **axes)).run().dataset
-    found = module.run()
+    expected = dx.scene(scene(names, **axes)).run().dataset
+    result = module.run()
     for name in names:
-        assert found[name].shape == wanted[name].shape
-        np.testing.assert_allclose(found[name], wanted[name], rtol=1e-14)
+        assert result[name].shape == expected[name].shape
+        np.testing.assert_allclose(result[name], expected[name], rtol=1e-14)
     empty = module.run(theta=[])
     assert empty["stroke"].shape == (3, 2)
     assert empty["V_C"].shape[-1] == 0
@@ -127,20 +127,20 @@ def test_a_speed_left_open_keeps_its_sign_open(speeds, tmp_path):
     module = imported(dx.compile(scene(["advance_angle", "stroke"], **axes), tmp_path / "press_way.py"))
     events = dx.events(ec=0.1, AB=1.0, BC=3.0, omega0=-7.0)
     assert module.advance_angle(0.1, -7.0) == events["advance_angle"]
-    found = module.run()
-    assert found["advance_angle"].shape == (2, 2)
-    assert found["stroke"].shape == (2,)
+    result = module.run()
+    assert result["advance_angle"].shape == (2, 2)
+    assert result["stroke"].shape == (2,)
 
 
 @pytest.mark.parametrize("outputs", [["stroke"], ["margin", "theta_outer"], ["advance_angle", "status"]])
 def test_a_scene_of_whole_designs_needs_no_angle(outputs):
     written = {"outputs": outputs, "mechanism": {"ec": [0.0, 0.1, 2.5], "AB": 1.0, "BC": 3.0}}
-    found = dx.scene(written).run().dataset
+    result = dx.scene(written).run().dataset
     events = dx.events(ec=np.array([0.0, 0.1, 2.5]), AB=1.0, BC=3.0)
-    assert found.sizes == {"ec": 3}
-    np.testing.assert_array_equal(found.status, events["status"])
+    assert result.sizes == {"ec": 3}
+    np.testing.assert_array_equal(result.status, events["status"])
     for name in set(outputs) - {"status", "margin"}:
-        np.testing.assert_allclose(found[name], events[name], rtol=1e-14)
+        np.testing.assert_allclose(result[name], events[name], rtol=1e-14)
     assert [axis["name"] for axis in dx.explain(written)["axes"]] == ["ec"]
     assert math.isclose(dx.explain(written)["points"], 3)
 
@@ -151,5 +151,5 @@ def test_a_reduction_under_a_load_that_has_no_say(tmp_path):
     text = scene(["stroke"], ec=[0.0, 0.01, 0.02], AB=0.2, BC=[0.5, 0.6])
     load = dx.over_theta([0.0, 1.0, 2.0], [-400.0, 200.0, -50.0], kind="linear")
     read = dx.scene({**text, "reduce": {"ec": "max"}, "loads": {"F_Y": load}})
-    found = imported(dx.compile(read, tmp_path / "press.py")).run()
-    np.testing.assert_array_equal(found["stroke_max"], read.run().dataset.stroke_max)
+    result = imported(dx.compile(read, tmp_path / "press.py")).run()
+    np.testing.assert_array_equal(result["stroke_max"], read.run().dataset.stroke_max)

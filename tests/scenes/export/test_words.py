@@ -73,27 +73,27 @@ def nothing_defined():
 
 def names(words):
     """The words that can be names of quantities; others are refused by name."""
-    found = []
+    result = []
     for word in words:
         try:
-            found.append(dx.define(word, "2*a_C"))
+            result.append(dx.define(word, "2*a_C"))
         except ValueError:
             with pytest.raises(ValueError, match=f"'{word}'"):
                 dx.define(word, "2*a_C")
         else:
             dx.undefine(word)
-    return found
+    return result
 
 
 def written(to, place):
     """The identifiers in all that is written in a language."""
-    found = set()
+    result = set()
     for more in SCENES.values():
         if to == "jax" and "accuracy" in more:
             continue
         texts = generated(scene(**more), place / VALUES[to][1], to).texts
-        found |= {word for text in texts.values() for word in re.findall(r"\b[A-Za-z]\w*", text)}
-    return found
+        result |= {word for text in texts.values() for word in re.findall(r"\b[A-Za-z]\w*", text)}
+    return result
 
 
 def spoken(to):
@@ -113,44 +113,44 @@ def spoken(to):
 
 def drawn(to, place, few, refused):
     """Words that are not refused by a table: some, all of them by DESAXE_THOROUGH=all."""
-    found = sorted({*words_of(to).lines, *written(to, place), *spoken(to)} - refused)
-    found = [word for word in found if re.fullmatch(r"(?!t\d)[A-Za-z]\w{0,47}", word, re.ASCII)]
-    return random.Random(27).sample(found, min(len(found), cases(few, 150, len(found))))
+    result = sorted({*words_of(to).lines, *written(to, place), *spoken(to)} - refused)
+    result = [word for word in result if re.fullmatch(r"(?!t\d)[A-Za-z]\w{0,47}", word, re.ASCII)]
+    return random.Random(27).sample(result, min(len(result), cases(few, 150, len(result))))
 
 
 def values_in_numba(place, words):
     """By all that a module has; functions of one output as they stand, since each is compiled apart."""
     made = imported(place)
-    found = made.run()
+    result = made.run()
     for k, theta in enumerate(THETA):
         point = dict(zip(made.OUTPUTS, made.point(theta), strict=True))
         for word in words:
-            assert getattr(made, word).py_func(theta) == pytest.approx(found[word][k], rel=1e-12)
-            assert point[word] == pytest.approx(found[word][k], rel=1e-12)
+            assert getattr(made, word).py_func(theta) == pytest.approx(result[word][k], rel=1e-12)
+            assert point[word] == pytest.approx(result[word][k], rel=1e-12)
     assert getattr(made, words[-1])(1.0) == pytest.approx(made.evaluate([1.0])[words[-1]][0], rel=1e-12)
-    return found
+    return result
 
 
 def values_in_jax(place, words):
     with jax_in_doubles():
         made = imported(place)
-        found = made.evaluate(theta=THETA)
+        result = made.evaluate(theta=THETA)
         ones = [getattr(made, word)(THETA) for word in words[:9]]
-        np.testing.assert_array_equal(ones, [found["a_C"] * 2] * len(ones))
-        return found
+        np.testing.assert_array_equal(ones, [result["a_C"] * 2] * len(ones))
+        return result
 
 
 def values_in_javascript(place, words):
-    found, *ones = es_module(
+    result, *ones = es_module(
         place, [["evaluate", {"theta": THETA.tolist()}], *([w, THETA[0]] for w in words)]
     )
-    assert ones == [found[word][0] for word in words]
-    return found
+    assert ones == [result[word][0] for word in words]
+    return result
 
 
 def values_in_c(place, words):
-    found = array_values(library(place), "press", [THETA], len(words) + 1)
-    return dict(zip(["a_C", *words], found, strict=True))
+    result = array_values(library(place), "press", [THETA], len(words) + 1)
+    return dict(zip(["a_C", *words], result, strict=True))
 
 
 def values_in_octave(place, words):
@@ -185,9 +185,9 @@ def test_words_as_quantities(to, tmp_path):
         good = [word for word in good if word not in taken]
         dx.compile(scene(["a_C", *good]), tmp_path / file, to=to)
     assert len(good) > 12
-    found = values(tmp_path / file, good)
+    result = values(tmp_path / file, good)
     for word in good:
-        np.testing.assert_allclose(found[word], 2.0 * np.asarray(found["a_C"]), rtol=1e-15)
+        np.testing.assert_allclose(result[word], 2.0 * np.asarray(result["a_C"]), rtol=1e-15)
 
 
 @pytest.mark.parametrize("to", VALUES)
@@ -196,8 +196,8 @@ def test_a_quantity_is_not_called_as_the_table_of_a_load(to, tmp_path):
     place = tmp_path / VALUES[to][1]
     if to in ("c", "octave"):  # where outputs have places, not names
         dx.compile(made, place, to=to)
-        found = VALUES[to][0](place, ["F_Y_x", "T_in"])
-        np.testing.assert_allclose(found["F_Y_x"], 2.0 * np.asarray(found["a_C"]), rtol=1e-15)
+        result = VALUES[to][0](place, ["F_Y_x", "T_in"])
+        np.testing.assert_allclose(result["F_Y_x"], 2.0 * np.asarray(result["a_C"]), rtol=1e-15)
     else:
         with pytest.raises(ValueError, match="outputs: 'F_Y_x'"):
             dx.compile(made, place, to=to)
@@ -262,8 +262,8 @@ def by_c(folder, words):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("CPATH", str(folder))
         loaded = [library(folder / f"{word}.c") for word in words[:3]]
-    found = [point_values(one, word, [HERE], 1)[1][0] for one, word in zip(loaded, words, strict=False)]
-    return "\n".join(map(repr, found))
+    result = [point_values(one, word, [HERE], 1)[1][0] for one, word in zip(loaded, words, strict=False)]
+    return "\n".join(map(repr, result))
 
 
 FILES = {
@@ -288,7 +288,7 @@ def test_words_as_files(to, tmp_path):
     words = drawn(to, tmp_path, count, refused | own | script | {*keyword.kwlist, *keyword.softkwlist})
     for word in words:
         dx.compile(scene(), tmp_path / f"{word}{suffix}", to=to)
-    wanted = dx.evaluate("a_C", theta=HERE, **SIZES, omega0=157.08)
-    found = [float(line) for line in read(tmp_path, words).split()]
-    np.testing.assert_allclose(found, wanted, rtol=1e-6 if to == "jax" else 1e-13)  # float32 there
-    assert len(found) >= 3
+    expected = dx.evaluate("a_C", theta=HERE, **SIZES, omega0=157.08)
+    result = [float(line) for line in read(tmp_path, words).split()]
+    np.testing.assert_allclose(result, expected, rtol=1e-6 if to == "jax" else 1e-13)  # float32 there
+    assert len(result) >= 3

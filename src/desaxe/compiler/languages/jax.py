@@ -77,11 +77,11 @@ def _text(module: Module) -> str:
 
 def _content(module: Module) -> list[str]:
     """The tables as arrays of NumPy, whose doubles stay doubles."""
-    found = []
+    result = []
     for name, column in arrays_of(module.tables).items():
         rows = "".join(f"{INDENT}{row}\n" for row in numbers(column))
-        found.append(f"{name} = array([\n{rows}])\n")
-    return found
+        result.append(f"{name} = array([\n{rows}])\n")
+    return result
 
 
 def _imports(code: str) -> list[str]:

@@ -69,10 +69,10 @@ def with_safe_names(program: Program, reserved: Collection[str]) -> Program:
 
 def refuse_taken(outputs: Iterable[str], taken: Collection[str]) -> None:
     """ValueError for outputs that are words of a language, or would hide what else a module calls so."""
-    found = ", ".join(repr(name) for name in outputs if name in taken)
-    if found:
+    result = ", ".join(repr(name) for name in outputs if name in taken)
+    if result:
         raise ValueError(
-            f"outputs: {found}: a word of the module's language, or a name that the module itself has; "
+            f"outputs: {result}: a word of the module's language, or a name that the module itself has; "
             "give the quantity another name"
         )
 
@@ -111,14 +111,14 @@ _DEFINED = re.compile(r"^(?:static|function|def)\b.*?(\w+)\(", re.MULTILINE)
 
 def with_helpers(text: str, helpers: Mapping[str, str]) -> list[str]:
     """The sources of the helpers that a text calls, and of those that they call, in their order."""
-    wanted: set[str] = set()
+    requested: set[str] = set()
     stack = [text]
     while stack:
         for name in called(stack.pop(), helpers):
-            if name not in wanted:
-                wanted.add(name)
+            if name not in requested:
+                requested.add(name)
                 stack.append(helpers[name].partition("{")[2] or helpers[name].partition("\n")[2])
-    return [source for name, source in helpers.items() if name in wanted]
+    return [source for name, source in helpers.items() if name in requested]
 
 
 def numbers(values: Iterable[float]) -> list[str]:

@@ -127,11 +127,11 @@ class _Writer(Pairs):
 
 def _made_of(program: Program, gap: str) -> set[str]:
     """The gap and the lines that it is a sum, product or select of."""
-    wanted = {gap}
+    requested = {gap}
     for line in reversed(program.lines):
-        if line.name in wanted and line.op in WIDE:
-            wanted.update(names_in(line.args[line.op == "select" :]))
-    return {line.name for line in program.lines if line.name in wanted and line.op in WIDE}
+        if line.name in requested and line.op in WIDE:
+            requested.update(names_in(line.args[line.op == "select" :]))
+    return {line.name for line in program.lines if line.name in requested and line.op in WIDE}
 
 
 def _is_sign(line: Line, signs: set[Argument]) -> bool:

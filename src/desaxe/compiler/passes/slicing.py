@@ -20,8 +20,8 @@ def keep_outputs(program: Program, outputs: Sequence[str]) -> Program:
 
 def drop_unused(program: Program) -> Program:
     """The program without the lines and inputs that its outputs do not reach."""
-    wanted = reached(program)
-    lines = tuple(line for line in program.lines if line.name in wanted)
-    notes = {name: note for name, note in program.notes.items() if name in wanted}
-    inputs = tuple(name for name in program.inputs if name in wanted)
+    requested = reached(program)
+    lines = tuple(line for line in program.lines if line.name in requested)
+    notes = {name: note for name, note in program.notes.items() if name in requested}
+    inputs = tuple(name for name in program.inputs if name in requested)
     return program._replace(inputs=inputs, lines=lines, notes=notes)

@@ -82,29 +82,29 @@ def drive(
     if not design.numbers["omega0"]:
         raise ValueError("drive: omega0 = 0 gives no cycle; it must be the speed of the crank")
     status = _status(design)
-    found: dict[str, Any] = dict.fromkeys(FIGURES, nan)
+    result: dict[str, Any] = dict.fromkeys(FIGURES, nan)
     slopes = {name: dict.fromkeys(design.parameters, nan) for name in DIFFERENTIATED}
     course: dict[str, Array] = {}
     try:
         if status in (0, 2):
-            course = _over_a_turn(design, found, slopes)
+            course = _over_a_turn(design, result, slopes)
             wheel = flywheel_for(design, required) if "alpha" not in design.numbers else None
             if wheel is not None:
                 motion, by = wheel
-                found |= {"flywheel_torque": motion.torque, "flywheel_inertia": motion.inertia}
+                result |= {"flywheel_torque": motion.torque, "flywheel_inertia": motion.inertia}
                 for k, figure in enumerate(("flywheel_torque", "flywheel_inertia")):
                     slopes[figure] = {name: pair[k] for name, pair in by.items()}
                 speed = np.abs(motion.panels.values["omega"]).ravel()
                 course |= {"theta_of_speed": motion.panels.x.ravel(), "speed": speed}
-            _starting(design, reverse, found, slopes)
+            _starting(design, reverse, result, slopes)
     except NoCycleError as error:
         status, course = error.status, {}
-        found = dict.fromkeys(FIGURES, nan)
+        result = dict.fromkeys(FIGURES, nan)
     if status:
         lost = design.parameters if status != 2 else [n for n in ("ec", "AB", "BC") if n in design.parameters]
         for gradient in slopes.values():
             gradient.update(dict.fromkeys(lost, nan))
-    figures = {name: float(value) for name, value in found.items()}
+    figures = {name: float(value) for name, value in result.items()}
     gradients = {name: {by: float(slope) for by, slope in own.items()} for name, own in slopes.items()}
     about = {"fluctuation": required, "gradient": gradients, "status": status}
     inputs = {**design.numbers, **design.loads}
@@ -136,7 +136,7 @@ def _integrands(torque: Array, speed: Array) -> dict[str, tuple[Array, Any, Any]
 
 
 def _over_a_turn(
-    design: Turn, found: dict[str, Any], slopes: dict[str, dict[str, float]]
+    design: Turn, result: dict[str, Any], slopes: dict[str, dict[str, float]]
 ) -> dict[str, Array]:
     """The figures other than flywheel and starting torque; arrays of torque and power."""
     names, way = ["T_in", *(f"T_in_wrt_{name}" for name in design.parameters)], design.direction
@@ -160,7 +160,7 @@ def _over_a_turn(
     period, longer = total["time"], by["time"]
     mean, power = total["mean"] / period, total["net"] / period
     rms = sqrt(total["square"] / period)
-    found |= {
+    result |= {
         "period": period, "torque_mean": way * mean, "torque_rms": rms, "power_mean": power,
         "work_in": total["work_in"], "work_out": total["work_out"],
     }  # fmt: skip
@@ -177,10 +177,10 @@ def _over_a_turn(
             slopes[figure][p] = slope
     for figure, name in (("torque_peak", "T_in"), ("power_peak", "power_in")):
         top = _peak(design, name, "absmax")
-        found[figure], slopes[figure] = top["value"], top["gradient"]
-        found["theta_peak"] = top["theta"] if name == "T_in" else found["theta_peak"]
+        result[figure], slopes[figure] = top["value"], top["gradient"]
+        result["theta_peak"] = top["theta"] if name == "T_in" else result["theta_peak"]
     if "alpha" not in design.numbers:  # else turns differ
-        found["theta_peak"] %= design.angle
+        result["theta_peak"] %= design.angle
     samples = turn.samples(torque)
     return {"theta": turn.places, "T_in": way * samples, "power_in": samples * turn.samples(speed)}
 
@@ -193,19 +193,19 @@ def _peak(design: Turn, name: str, kind: str, **other: Any) -> dict[str, Any]:
 
 
 def _starting(
-    design: Turn, reverse: bool, found: dict[str, Any], slopes: dict[str, dict[str, float]]
+    design: Turn, reverse: bool, result: dict[str, Any], slopes: dict[str, dict[str, float]]
 ) -> None:
     """The torque that starts the crank from any standstill, forwards or, in reverse, either way."""
-    found["starting_torque"] = -inf
+    result["starting_torque"] = -inf
     for way in (design.direction, -design.direction)[: 2 if reverse else 1]:
         top = _peak(design, "T_in", "max" if way > 0.0 else "min", omega0=way * CREEP, alpha=None)
         if top["status"] in (JAMS, TWO_BALANCES):
-            found["starting_torque"] = inf if top["status"] == JAMS else nan
+            result["starting_torque"] = inf if top["status"] == JAMS else nan
             slopes["starting_torque"] = dict.fromkeys(design.parameters, nan)
             return
-        if way * top["value"] > found["starting_torque"]:
-            found["starting_torque"], found["theta_start"] = way * top["value"], top["theta"] % design.angle
+        if way * top["value"] > result["starting_torque"]:
+            result["starting_torque"], result["theta_start"] = way * top["value"], top["theta"] % design.angle
             still = {p: 0.0 if p in ("omega0", "alpha") else way * by for p, by in top["gradient"].items()}
             slopes["starting_torque"] = still
-    if abs(found["starting_torque"]) <= CREEP:
-        found["starting_torque"] = 0.0
+    if abs(result["starting_torque"]) <= CREEP:
+        result["starting_torque"] = 0.0

@@ -69,12 +69,12 @@ def _store(design: Turn, fluctuation: float, before: FlywheelMotion | None) -> F
     motion = None if before is None else before.motion
 
     def loads(theta: Array, row: Array) -> dict[str, Array]:
-        found = design.values(names, theta, omega0=design.direction * CREEP, mu=None)
+        result = design.values(names, theta, omega0=design.direction * CREEP, mu=None)
         if design.has_friction:
             rough = design.values(["T_in"], theta, motion=motion)["T_in"]
             smooth = design.values(["T_in"], theta, motion=motion, mu=None)["T_in"]
-            found["T_in"] = found["T_in"] + rough - smooth
-        return found
+            result["T_in"] = result["T_in"] + rough - smooth
+        return result
 
     edges = design.edges(["T_in"], motion)
     panels = resolved(loads, edges if before is None else np.append(edges, before.panels.edges))
@@ -152,9 +152,9 @@ def _gradient(design: Turn, fluctuation: float, state: FlywheelMotion) -> dict[s
     extremes_move = design.moves(["T_in"], extremes)
     sides = {}
     for name in own:
-        found = np.array(response(-flat[f"T_in_wrt_{name}"], jump * moves.get(name, 0.0)))
-        found[1:] += slopes * extremes_move.get(name, 0.0)
-        sides[name] = -found
+        result = np.array(response(-flat[f"T_in_wrt_{name}"], jump * moves.get(name, 0.0)))
+        result[1:] += slopes * extremes_move.get(name, 0.0)
+        sides[name] = -result
     sides["omega0"] = np.array([0.0, 2.0 * speed * high**2, 2.0 * speed * low**2])
     sides["fluctuation"] = np.array([0.0, speed**2 * high, -(speed**2) * low])
     solved = np.linalg.solve(columns, np.array(list(sides.values())).T)[1:]

@@ -72,17 +72,17 @@ class Drive(Answer):
 
     def design(self) -> list[str]:
         """The inputs with their units, loads in a few words."""
-        told = []
+        message = []
         for name, value in self.inputs.items():
             if name == "sliders":
-                told.append(str(value))
+                message.append(str(value))
                 continue
             conversion = self._system.of(name)
             if isinstance(value, Load):
-                told.append(f"{name} {brief(value, conversion)}")
+                message.append(f"{name} {brief(value, conversion)}")
                 continue
-            told.append(with_unit(f"{name} = {conversion.shown(value):.6g}", conversion.unit))
-        return told
+            message.append(with_unit(f"{name} = {conversion.shown(value):.6g}", conversion.unit))
+        return message
 
     def unit(self, name: str) -> str:
         """The unit of a figure or of an array of `course`, as a label has it."""
@@ -141,5 +141,5 @@ def _conversion(units: UnitSystem, name: str) -> Conversion:
     return units.of_unit(COURSE[name]) if name in COURSE else units.of(name)
 
 
-def _units(found: Mapping[str, Any]) -> dict[str, Any]:
-    return {key: unit for key, unit in units_by_name(found).items() if key in (*FIGURES, "gradient")}
+def _units(result: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: unit for key, unit in units_by_name(result).items() if key in (*FIGURES, "gradient")}

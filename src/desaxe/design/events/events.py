@@ -59,13 +59,13 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
     """
     check_common({}, branch)
     units = _units_per_angle if omega0 is None else units_by_name
-    given = {"ec": ec, "AB": AB, "BC": BC, "omega0": 1.0 if omega0 is None else omega0}
-    numbers = {name: as_number(name, value, tuple(given), ("events",)) for name, value in given.items()}
+    inputs = {"ec": ec, "AB": AB, "BC": BC, "omega0": 1.0 if omega0 is None else omega0}
+    numbers = {name: as_number(name, value, tuple(inputs), ("events",)) for name, value in inputs.items()}
     if None in numbers.values():
         with IMPORTS:
             from .arrays import events_of_arrays
 
-        found_of = events_of_arrays(given, int(branch), omega0 is not None)
+        found_of = events_of_arrays(inputs, int(branch), omega0 is not None)
         return Answer(found_of, units, TurnStatus)
     e, crank, rod, omega = (float(value or 0.0) for value in numbers.values())
     lengths, forward = {"ec": e, "AB": crank, "BC": rod}, -1 if omega < 0.0 else 1
@@ -83,9 +83,9 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
     return Answer({**result, "gradient": gradient, "status": found.status}, units, TurnStatus)
 
 
-def _units_per_angle(found: Mapping[str, Any]) -> dict[str, Any]:
+def _units_per_angle(result: Mapping[str, Any]) -> dict[str, Any]:
     """The units of an answer without a speed, whose velocities are slopes of the position."""
-    units = units_by_name(found)
+    units = units_by_name(result)
     units |= dict.fromkeys(VELOCITIES, unit_of("Y", "theta"))
     units["gradient"] |= {name: slopes_of("Y_wrt_theta", LENGTHS) for name in VELOCITIES}
     return units

@@ -41,10 +41,12 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
         >>> found["kind"], found["can_turn"], found["margin"]
         ('crank', True, 0.125)
     """
-    given = {"ec": ec, "AB": AB, "BC": BC}
-    lengths = {name: as_number(name, value, tuple(given), ("feasibility",)) for name, value in given.items()}
+    inputs = {"ec": ec, "AB": AB, "BC": BC}
+    lengths = {
+        name: as_number(name, value, tuple(inputs), ("feasibility",)) for name, value in inputs.items()
+    }
     if None in lengths.values():
-        return Answer(_of_arrays(given), _units, TurnStatus)
+        return Answer(_of_arrays(inputs), _units, TurnStatus)
     ec, AB, BC = lengths.values()
     *angles, status, _, link_margin = closed_form(LIMITS).point(ec, AB, BC)
     margin = fsum((BC, -AB, -abs(ec)))  # rounded once, ties too
@@ -52,7 +54,7 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
     near = abs(margin) <= CHANGE_POINT_ULPS * ulp(BC)
     kind = "change point" if near else "crank" if margin > 0.0 else "rocker" if intervals else "none"
     slope = 0.0 if ec == 0.0 else (-1.0 if ec > 0.0 else 1.0)
-    found = {
+    result = {
         "margin": margin,
         "gradient": {"ec": slope, "AB": -1.0, "BC": 1.0},
         "can_turn": margin >= 0.0,
@@ -61,19 +63,19 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
         "grashof": link_margin >= 0.0,
         "status": status,
     }
-    return Answer(found, _units, TurnStatus)
+    return Answer(result, _units, TurnStatus)
 
 
-def _units(found: Mapping[str, Any]) -> dict[str, Any]:
+def _units(result: Mapping[str, Any]) -> dict[str, Any]:
     """The units of an answer of `feasibility`."""
-    return {**units_of(("margin", "theta_intervals")), "gradient": slopes_of("margin", found["gradient"])}
+    return {**units_of(("margin", "theta_intervals")), "gradient": slopes_of("margin", result["gradient"])}
 
 
-def _of_arrays(given: dict[str, Any]) -> dict[str, Any]:
+def _of_arrays(inputs: dict[str, Any]) -> dict[str, Any]:
     with IMPORTS:
         from ...evaluation.arrays import as_array, broadcast_shape
         from .arrays import of_arrays
 
-    arrays = {name: as_array(name, value, tuple(given), ("feasibility",)) for name, value in given.items()}
+    arrays = {name: as_array(name, value, tuple(inputs), ("feasibility",)) for name, value in inputs.items()}
     broadcast_shape(arrays)
     return of_arrays(*arrays.values())

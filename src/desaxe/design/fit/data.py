@@ -109,10 +109,10 @@ def _column(heading: Heading, values: Any, unit: str) -> Array:
     if hasattr(values, "magnitude"):
         values = in_unit(name, values, unit)
     try:
-        given = np.asarray(values)
-        if given.dtype.kind in "SUO":
-            _require_plain(given.ravel().tolist())
-        column = given.astype(np.float64)
+        value = np.asarray(values)
+        if value.dtype.kind in "SUO":
+            _require_plain(value.ravel().tolist())
+        column = value.astype(np.float64)
     except (TypeError, ValueError, OverflowError):
         raise TypeError(f"data: {name}: expected real numbers") from None
     if np.iscomplexobj(values) or column.ndim != 1:

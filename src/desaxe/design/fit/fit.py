@@ -101,8 +101,8 @@ def fit(
     given = _sigmas(sigma, read)
     model = FittedModel(read, unknowns, fixed, branch, given or dict.fromkeys(read.measured, 1.0))
     before = None if given else _set_sigma(model, loss, seed)
-    found = solve(model, loss, seed, absolute=bool(given), before=before)
-    return _result(model, found, loss, absolute=bool(given))
+    result = solve(model, loss, seed, absolute=bool(given), before=before)
+    return _result(model, result, loss, absolute=bool(given))
 
 
 def _sigmas(sigma: Mapping[str, Any] | None, data: Data) -> dict[str, float]:
@@ -120,14 +120,14 @@ def _sigmas(sigma: Mapping[str, Any] | None, data: Data) -> dict[str, float]:
 
 def _sigma(name: str, value: Any, samples: Array) -> float:
     row = Input(name, quantity(name).unit, "standard deviation", TINY, "a finite number > 0")
-    found = read(row, value, "sigma", row.limit)
+    result = read(row, value, "sigma", row.limit)
     size = float(np.max(np.abs(samples), initial=0.0, where=np.isfinite(samples))) or 1.0
-    if not size / MOST <= found <= size * MOST:
+    if not size / MOST <= result <= size * MOST:
         raise ValueError(
             f"sigma: {name} = {shown(value)}: samples of up to {size:.3g} have one between "
             f"{size / MOST:.3g} and {size * MOST:.3g}"
         )
-    return found
+    return result
 
 
 def _set_sigma(model: FittedModel, loss: str, seed: int) -> FitSolution:
@@ -146,10 +146,13 @@ def _set_sigma(model: FittedModel, loss: str, seed: int) -> FitSolution:
 
 
 @np.errstate(all="ignore")  # what is not fixed by the data is infinite or NaN
-def _result(model: FittedModel, found: FitSolution, loss: str, absolute: bool) -> Fit:
-    residuals, jacobian = model.residuals(found.x), model.jacobian(found.x)
+def _result(model: FittedModel, result: FitSolution, loss: str, absolute: bool) -> Fit:
+    residuals, jacobian = model.residuals(result.x), model.jacobian(result.x)
     sizes = np.array(
-        [abs(x) if abs(x) > 1e-6 * u.scale else u.scale for x, u in zip(found.x, model.unknowns, strict=True)]
+        [
+            abs(x) if abs(x) > 1e-6 * u.scale else u.scale
+            for x, u in zip(result.x, model.unknowns, strict=True)
+        ]
     )
     freedom = residuals.size - len(model.names)
     variance = inflation(residuals, loss)
@@ -160,11 +163,11 @@ def _result(model: FittedModel, found: FitSolution, loss: str, absolute: bool) -
     correlation = spread.covariance / np.outer(error, error)
     np.fill_diagonal(correlation, 1.0)
     quantile = NORMAL if absolute else _student(freedom)
-    values, slopes = model.quantities(found.x)
-    converged = _has_converged(model, found.x, residuals, jacobian, loss)
+    values, slopes = model.quantities(result.x)
+    converged = _has_converged(model, result.x, residuals, jacobian, loss)
     status = STOPPED if not converged else OPEN if spread.unidentified else DONE
     total = float(residuals @ residuals) if absolute else np.nan
-    by_name = dict(zip(model.names, found.x.tolist(), strict=True))
+    by_name = dict(zip(model.names, result.x.tolist(), strict=True))
     return Fit(
         {
             "value": by_name,
@@ -179,8 +182,8 @@ def _result(model: FittedModel, found: FitSolution, loss: str, absolute: bool) -
             "residuals": {q: column - values[q] for q, column in model.data.measured.items()},
             "jacobian": slopes,
             "unidentified": spread.unidentified,
-            "at_bound": _at_bound(model, found.x),
-            "evaluations": found.evaluations,
+            "at_bound": _at_bound(model, result.x),
+            "evaluations": result.evaluations,
             "chi_square": total / freedom if freedom else np.nan,
             "status": status,
             "message": WORDS[status] + (_far_beyond(residuals, freedom, loss) if absolute else ""),
@@ -219,8 +222,8 @@ def _far_beyond(residuals: Array, freedom: int, loss: str) -> str:
     total = float(residuals @ residuals)
     if not freedom or not chdtrc(freedom, total) < UNLIKELY:
         return ""
-    told = f"residuals are far beyond sigma: chi-square is {total:.3g}, {freedom} are expected"
-    return f"; {told}: sigma too small, an unknown missing (nuisance=), or outliers: try loss='huber'"
+    message = f"residuals are far beyond sigma: chi-square is {total:.3g}, {freedom} are expected"
+    return f"; {message}: sigma too small, an unknown missing (nuisance=), or outliers: try loss='huber'"
 
 
 def _student(freedom: int) -> float:

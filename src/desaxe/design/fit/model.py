@@ -50,7 +50,7 @@ class FittedModel:
         moved = [p for p in self.parameters if p in needs or p in ("AB", "BC")]
         if "theta" in needs and (OFFSET in self.names or self.data.course == "t"):
             moved.append("theta")
-        found = {}
+        result = {}
         for parameter in moved:
             name = sensitivity(of, parameter)
             try:
@@ -59,8 +59,8 @@ class FittedModel:
                 if parameter not in needs:
                     continue
                 raise ValueError(f"fit: {of} by {parameter}: this derivative is not derived") from None
-            found[parameter] = name
-        return found
+            result[parameter] = name
+        return result
 
     def theta(self, x: Array, at: Array | None = None) -> tuple[Array, dict[str, Array]]:
         """The crank angle at each sample, and its derivative by each unknown that moves it."""
@@ -90,21 +90,21 @@ class FittedModel:
         theta, moves = self.theta(x, at)
         asked = list(dict.fromkeys([*self.slopes, *(n for s in self.slopes.values() for n in s.values())]))
         inputs = {**self.fixed, **{p: value[p] for p in self.parameters}}
-        found = evaluate(asked, theta=theta, branch=self.branch, **inputs)
-        found = {name: np.broadcast_to(array, theta.shape) for name, array in found.items()}
+        result = evaluate(asked, theta=theta, branch=self.branch, **inputs)
+        result = {name: np.broadcast_to(array, theta.shape) for name, array in result.items()}
         values, slopes = {}, {}
         for q, names in self.slopes.items():
             gain, bias = value.get(f"{q}_scale", 1.0), value.get(f"{q}_bias", 0.0)
-            by = {p: gain * found[n] for p, n in names.items() if p != "theta"}
+            by = {p: gain * result[n] for p, n in names.items() if p != "theta"}
             for p, move in moves.items() if "theta" in names else ():
                 if p in self.names:
-                    by[p] = by.get(p, 0.0) + gain * found[names["theta"]] * move
+                    by[p] = by.get(p, 0.0) + gain * result[names["theta"]] * move
             by |= {
                 n: one
-                for n, one in ((f"{q}_scale", found[q]), (f"{q}_bias", np.ones_like(theta)))
+                for n, one in ((f"{q}_scale", result[q]), (f"{q}_bias", np.ones_like(theta)))
                 if n in self.names
             }
-            values[q], slopes[q] = gain * found[q] + bias, by
+            values[q], slopes[q] = gain * result[q] + bias, by
         return values, slopes
 
     def residuals(self, x: Array) -> Array:

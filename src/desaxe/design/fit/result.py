@@ -20,9 +20,9 @@ WORDS = {int(status): status.words for status in FitStatus}
 class Fit(Answer):
     """The result of `fit`; see there for its keys. `system` is that of its numbers, report and plot."""
 
-    def __init__(self, found: dict[str, Any], model: FittedModel) -> None:
-        super().__init__(found, _units_of(found, model))
-        self._found, self._model = found, model
+    def __init__(self, result: dict[str, Any], model: FittedModel) -> None:
+        super().__init__(result, _units_of(result, model))
+        self._found, self._model = result, model
 
     def convert_rest(self, shown: Shown) -> None:
         """The covariance in other units, and of pint quantities all but the values as plain numbers."""
@@ -57,15 +57,15 @@ class Fit(Answer):
         at = np.atleast_1d(np.asarray(self._system.of(course).to_si(np.asarray(at, float))))
         x = np.array([self._found["value"][name] for name in self["names"]])
         values, slopes = self._model.quantities(x, at)
-        found = {}
+        result = {}
         for q, value in values.items():
             rows = np.array(
                 [slopes[q].get(name, np.zeros_like(at)) * np.ones_like(at) for name in self["names"]]
             )
             variance = np.einsum("ki,kl,li->i", rows, self._found["covariance"], rows)
             own = self._system.of(q)
-            found[q] = own.shown(value), own.shown(np.sqrt(variance))
-        return found
+            result[q] = own.shown(value), own.shown(np.sqrt(variance))
+        return result
 
     def report(self) -> str:
         """A table of the unknowns with standard errors and intervals, as text."""
@@ -130,11 +130,11 @@ def _unit_of(name: str, model: FittedModel) -> QuantityUnit:
     return unit_of(next((q for q in measured if name == f"{q}_bias"), name))
 
 
-def _units_of(found: dict[str, Any], model: FittedModel) -> dict[str, Any]:
+def _units_of(result: dict[str, Any], model: FittedModel) -> dict[str, Any]:
     """The units of a result; relative directions, correlations and words have none."""
-    own = {name: _unit_of(name, model) for name in found["names"]}
+    own = {name: _unit_of(name, model) for name in result["names"]}
     return {
         **dict.fromkeys(("value", "std_error", "interval"), own),
-        "residuals": {q: unit_of(q) for q in found["residuals"]},
-        "jacobian": {q: {n: unit_of(q, own[n].name) for n in rows} for q, rows in found["jacobian"].items()},
+        "residuals": {q: unit_of(q) for q in result["residuals"]},
+        "jacobian": {q: {n: unit_of(q, own[n].name) for n in rows} for q, rows in result["jacobian"].items()},
     }

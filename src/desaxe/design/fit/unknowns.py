@@ -42,10 +42,10 @@ def unknowns_of(
         nuisance = (nuisance,) if isinstance(nuisance, str) else tuple(dict.fromkeys(nuisance))
     except TypeError:
         raise TypeError(f"nuisance = {shown(nuisance)}: expected a list of names") from None
-    found = [_parameter(name, value, fixed) for name, value in over.items()]
-    longest = max((u.scale for u in found if INPUTS[u.name].unit == "m"), default=1.0)
-    found = [u._replace(scale=longest) if u.name == "ec" else u for u in found]
-    return [*found, *(_nuisance(name, data) for name in nuisance)]
+    result = [_parameter(name, value, fixed) for name, value in over.items()]
+    longest = max((u.scale for u in result if INPUTS[u.name].unit == "m"), default=1.0)
+    result = [u._replace(scale=longest) if u.name == "ec" else u for u in result]
+    return [*result, *(_nuisance(name, data) for name in nuisance)]
 
 
 def _parameter(name: str, value: Any, fixed: Mapping[str, Any]) -> Unknown:

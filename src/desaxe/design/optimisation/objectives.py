@@ -37,21 +37,21 @@ class Goal(NamedTuple):
 def goals_of(maximize: Any, minimize: Any) -> list[Goal]:
     """The objectives, each with its sense: 1 to maximise, -1 to minimise."""
     goals = []
-    for wanted, sense in ((maximize, 1), (minimize, -1)):
-        goals += [Goal(checked(measure), sense) for measure in _several(wanted)]
+    for requested, sense in ((maximize, 1), (minimize, -1)):
+        goals += [Goal(checked(measure), sense) for measure in _several(requested)]
     if not goals:
         raise TypeError('optimize: say what to maximize= or to minimize=, such as ("absmax", "a_C")')
     return goals
 
 
-def _several(wanted: Any) -> list[Any]:
+def _several(requested: Any) -> list[Any]:
     """One or several objectives as a list; a pair (kind, quantity) is one objective."""
-    if wanted is None:
+    if requested is None:
         return []
-    many = isinstance(wanted, tuple) and (
-        len(wanted) not in (2, 3) or not isinstance(wanted[0], str) or is_named(wanted[0])
+    many = isinstance(requested, tuple) and (
+        len(requested) not in (2, 3) or not isinstance(requested[0], str) or is_named(requested[0])
     )
-    return list(wanted) if many or isinstance(wanted, list) else [wanted]
+    return list(requested) if many or isinstance(requested, list) else [requested]
 
 
 def space_of(
@@ -79,8 +79,8 @@ def space_of(
     if both:
         raise ValueError(f"{both[0]} is in over= and fixed at the same time")
     ends = {name: _pair(name, bounds) for name, bounds in over.items()}
-    given, loads = loads_of({name: value for name, value in fixed.items() if value is not None})
-    numbers = {name: _number(name, value) for name, value in given.items()}
+    inputs, loads = loads_of({name: value for name, value in fixed.items() if value is not None})
+    numbers = {name: _number(name, value) for name, value in inputs.items()}
     missing = [name for name in LENGTHS if name not in over and name not in numbers]
     if missing:
         raise TypeError(f"{caller}: {missing[0]} is missing (in over= or as a number)")
@@ -90,9 +90,9 @@ def space_of(
     return Space(tuple(over), low, high, {**numbers, **loads, **several}, branch, deadline)
 
 
-def _check_mapping(name: str, given: Any, example: str) -> None:
-    if not isinstance(given, Mapping):
-        raise TypeError(f"{name} = {shown(given)}: expected a dict, such as {example}")
+def _check_mapping(name: str, inputs: Any, example: str) -> None:
+    if not isinstance(inputs, Mapping):
+        raise TypeError(f"{name} = {shown(inputs)}: expected a dict, such as {example}")
 
 
 def _pair(name: str, bounds: Any) -> tuple[float, float]:

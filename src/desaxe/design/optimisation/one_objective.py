@@ -33,14 +33,14 @@ def solved(goal: Goal, space: Space, limits: list[Limit], starts: int, seed: int
         implied = [] if own else side_limits(None, "margin", edge * rod, LOWER)
         # After the first time the best is followed towards the edge.
         best = _best(goal, space, [*limits, *implied], 0 if places else starts, seed, places)
-        found, search = best
-        if found.violation > SATISFIED and _misses_implied(found, search):
+        result, search = best
+        if result.violation > SATISFIED and _misses_implied(result, search):
             continue  # a margin that is smaller yet may keep all limits
-        at_edge = any(c.key is None and m for c, m in zip(search.limits, found.multipliers, strict=False))
-        history.append((edge, abs(found.value)))
-        if found.violation > SATISFIED or not at_edge or _power(history) > GROWS:
+        at_edge = any(c.key is None and m for c, m in zip(search.limits, result.multipliers, strict=False))
+        history.append((edge, abs(result.value)))
+        if result.violation > SATISFIED or not at_edge or _power(history) > GROWS:
             break
-        places = [found.z]
+        places = [result.z]
     return result_of(goal, space, *best, _power(history) > GROWS)
 
 
@@ -58,25 +58,25 @@ def _best(
         stalled = near.residual > SETTLED or search.is_near_margin(near.z)
         for number in search.margins() if stalled else ():
             candidates.append((search.run(search.at_limit(near.z, number), number), search))
-    found, search = min(candidates, key=_rank)
-    if found.violation > SATISFIED:
-        nearest = search.nearest(found)
+    result, search = min(candidates, key=_rank)
+    if result.violation > SATISFIED:
+        nearest = search.nearest(result)
         if nearest.violation > SATISFIED:
             return nearest, search
-        found, search = min(*candidates, (nearest, search), (search.run(nearest.z), search), key=_rank)
-    found = search.polished(found)
-    return (search.probed(found) if found.residual > SETTLED else found), search
+        result, search = min(*candidates, (nearest, search), (search.run(nearest.z), search), key=_rank)
+    result = search.polished(result)
+    return (search.probed(result) if result.residual > SETTLED else result), search
 
 
-def _misses_implied(found: Candidate, search: LocalSearch) -> bool:
+def _misses_implied(result: Candidate, search: LocalSearch) -> bool:
     """True if the design breaks the margin that is implied."""
-    value = search.scaled(found.z)[0][search.count :]
+    value = search.scaled(result.z)[0][search.count :]
     return any(limit.key is None and v < 0.0 for limit, v in zip(search.limits, value, strict=True))
 
 
 def _rank(candidate: tuple[Candidate, LocalSearch]) -> tuple[float, float]:
-    found = candidate[0]
-    return max(found.violation, SATISFIED), found.value
+    result = candidate[0]
+    return max(result.violation, SATISFIED), result.value
 
 
 def _power(history: list[tuple[float, float]]) -> float:

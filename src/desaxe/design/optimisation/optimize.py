@@ -92,7 +92,7 @@ def optimize(
     limits = limits_of({} if keep is None else keep)
     with deadline.shown():
         if len(goals) > 1:
-            found = front(goals, space, limits, starts, seed, points)
+            result = front(goals, space, limits, starts, seed, points)
         else:
-            found = solved(goals[0], space, limits, starts, seed)
-    return Answer(found, partial(units_of_optimum, goals))
+            result = solved(goals[0], space, limits, starts, seed)
+    return Answer(result, partial(units_of_optimum, goals))

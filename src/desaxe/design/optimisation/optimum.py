@@ -20,24 +20,26 @@ FOUND, NONE, UNBOUNDED, EDGE, UNSURE, NO_VALUE = map(int, OptimizeStatus)
 SETTLED = 1e-4  # residual of the optimality conditions
 
 
-def result_of(goal: Goal, space: Space, found: Candidate, search: LocalSearch, grows: bool) -> dict[str, Any]:
+def result_of(
+    goal: Goal, space: Space, result: Candidate, search: LocalSearch, grows: bool
+) -> dict[str, Any]:
     """The result of `optimize` for one objective; `grows` where it does without bound towards the edge."""
-    design = {name: float(x[0]) for name, x in space.designs(found.z).items() if name in space.names}
-    active, multipliers = _named(space, found, search)
+    design = {name: float(x[0]) for name, x in space.designs(result.z).items() if name in space.names}
+    active, multipliers = _named(space, result, search)
     edge = None in active  # the implied limit, of turning
     active.pop(None, None)
     gain = multipliers.pop(None, 0.0)
     status = FOUND
-    if found.violation > SATISFIED:
+    if result.violation > SATISFIED:
         status = NONE
-    elif not np.isfinite(found.value):
+    elif not np.isfinite(result.value):
         status = NO_VALUE
     elif edge:
         status = UNBOUNDED if grows else EDGE
-    elif found.residual > SETTLED and not found.kink:
+    elif result.residual > SETTLED and not result.kink:
         status = UNSURE
     size = isinstance(goal.measure, tuple) and goal.measure[0] == "absmax"
-    value = abs(found.value) if size else -goal.sense * found.value
+    value = abs(result.value) if size else -goal.sense * result.value
     if edge:
         active["margin"], multipliers["margin"] = LOWER, gain
     if status == UNBOUNDED:
@@ -45,7 +47,7 @@ def result_of(goal: Goal, space: Space, found: Candidate, search: LocalSearch, g
         multipliers = dict.fromkeys(multipliers, np.nan)
     if status in (NONE, NO_VALUE):
         value = np.nan
-    if status in (NONE, NO_VALUE) or found.kink:
+    if status in (NONE, NO_VALUE) or result.kink:
         multipliers = dict.fromkeys(multipliers, np.nan)
     return {
         **design,
@@ -53,26 +55,26 @@ def result_of(goal: Goal, space: Space, found: Candidate, search: LocalSearch, g
         "active": active,
         "multipliers": multipliers,
         "status": status,
-        "message": _message(status, goal, space, design, found, search, active),
-        "residual": found.residual,
+        "message": _message(status, goal, space, design, result, search, active),
+        "residual": result.residual,
     }
 
 
-def _named(space: Space, found: Candidate, search: LocalSearch) -> tuple[dict[Any, str], dict[Any, float]]:
+def _named(space: Space, result: Candidate, search: LocalSearch) -> tuple[dict[Any, str], dict[Any, float]]:
     """The active limits and the multipliers, by name."""
     n, count = len(space.names), len(search.limits)
     active: dict[Any, str] = {}
     multipliers: dict[Any, float] = {limit.key: 0.0 for limit in search.limits} | dict.fromkeys(
         space.names, 0.0
     )
-    for limit, multiplier in zip(search.limits, found.multipliers[:count], strict=True):
+    for limit, multiplier in zip(search.limits, result.multipliers[:count], strict=True):
         if multiplier or limit.side == EQUAL:
             active[limit.key] = limit.side
             multipliers[limit.key] += float(-multiplier if limit.side == EQUAL else multiplier)
     width = space.high - space.low
     for side, part in (
-        (LOWER, found.multipliers[count : count + n]),
-        (UPPER, found.multipliers[count + n :]),
+        (LOWER, result.multipliers[count : count + n]),
+        (UPPER, result.multipliers[count + n :]),
     ):
         for name, multiplier, wide in zip(space.names, part, width, strict=True):
             if multiplier:
@@ -86,7 +88,7 @@ def _message(
     goal: Goal,
     space: Space,
     design: dict[str, float],
-    found: Candidate,
+    result: Candidate,
     search: LocalSearch,
     active: dict[Any, str],
 ) -> str:
@@ -94,31 +96,33 @@ def _message(
     where = _where(design)
     limit = "margin = BC - AB - |ec| = 0"
     if status == NONE:
-        return "no design in over= keeps all limits: " + _missed(found, search) + " at the nearest, " + where
+        return "no design in over= keeps all limits: " + _missed(result, search) + " at the nearest, " + where
     if status == NO_VALUE:
         return f"{what} has no finite value at any of the {len(search.places)} designs that were looked at"
     if status == UNBOUNDED:
-        told = f"no optimum: {what} grows without bound towards the limit of turning, {limit}, as near "
+        message = f"no optimum: {what} grows without bound towards the limit of turning, {limit}, as near "
         keep = "; keep a margin, such as keep={'margin': ('" + _number("margin", 0.005) + "', None)}"
-        return told + where + keep
+        return message + where + keep
     if status == EDGE:
-        told = f"the best is at the limit of turning itself, {limit}: {what} is bounded there, near "
-        return told + where
+        message = f"the best is at the limit of turning itself, {limit}: {what} is bounded there, near "
+        return message + where
     if status == UNSURE:
-        unsure = f", where the optimality conditions hold to {found.residual:.1g} only: more starts= may help"
+        unsure = (
+            f", where the optimality conditions hold to {result.residual:.1g} only: more starts= may help"
+        )
         return "the search ended at " + where + unsure
     plain = {key: key in INPUTS or key in space.names for key in active}
     names = {key: key if plain[key] else text_of(checked(key)) for key in active}
     held = ", ".join(f"{names[key]} ({side})" for key, side in active.items())
-    rest = f", held back by {held}" if held else _inside(space, found.z)
-    return "optimum at " + where + f"{_kink(goal, found)}{rest}{_left_out(what, search)}"
+    rest = f", held back by {held}" if held else _inside(space, result.z)
+    return "optimum at " + where + f"{_kink(goal, result)}{rest}{_left_out(what, search)}"
 
 
-def _kink(goal: Goal, found: Candidate) -> str:
+def _kink(goal: Goal, result: Candidate) -> str:
     """Why the derivatives do not vanish at an optimum, as text."""
-    if found.edge:
+    if result.edge:
         return f", at the edge of the designs where {text_of(goal.measure)} is finite"
-    return ", at a kink of the objective" if found.kink else ""
+    return ", at a kink of the objective" if result.kink else ""
 
 
 def _left_out(what: str, search: LocalSearch) -> str:
@@ -179,9 +183,9 @@ def _misses_turning(short: float) -> Message:
     return "margin = BC - AB - |ec| misses 0, from which on the crank turns, by " + _number("margin", short)
 
 
-def _missed(found: Candidate, search: LocalSearch) -> Message:
+def _missed(result: Candidate, search: LocalSearch) -> Message:
     """The most violated limit, and the violation, as text."""
-    value = search.scaled(found.z)[0][search.count :]
+    value = search.scaled(result.z)[0][search.count :]
     wrong = np.where(search.equal, np.abs(value), -value)
     short = wrong * search.scale[search.count :]
     for k in np.argsort(-wrong):
@@ -194,11 +198,11 @@ def _missed(found: Candidate, search: LocalSearch) -> Message:
     return "the margin, above 0, is less than " + _number("margin", least)
 
 
-def units_of_optimum(goals: list[Goal], found: Mapping[str, Any]) -> dict[Any, Any]:
+def units_of_optimum(goals: list[Goal], result: Mapping[str, Any]) -> dict[Any, Any]:
     """The units of the design, of the objectives, and of what they gain by relaxing a limit."""
     values = {goal.key: unit_of(goal.measure) for goal in goals}
-    units = units_by_name({key: value for key, value in found.items() if key in INPUTS or "[" in key})
-    if isinstance(found["value"], Mapping):
+    units = units_by_name({key: value for key, value in result.items() if key in INPUTS or "[" in key})
+    if isinstance(result["value"], Mapping):
         return {**units, "value": values}
-    gains = slopes_of(goals[0].measure, found["multipliers"])
+    gains = slopes_of(goals[0].measure, result["multipliers"])
     return {**units, "value": values[goals[0].key], "multipliers": gains}

@@ -73,11 +73,11 @@ class Functions:
         space.deadline.check()
         designs = space.designs(z)
         proper = [row[0] for row in self.rows if isinstance(row[0], OwnMeasure) or not callable(row[0])]
-        found = measured(proper, designs, space.branch) if proper else {}
+        result = measured(proper, designs, space.branch) if proper else {}
         value = np.empty((count, len(self.rows)))
         slope = np.zeros((count, len(self.rows), len(space.names)))
         for number, (measure, sign, bound) in enumerate(self.rows):
-            own = found[measure] if measure in found else measure(designs)
+            own = result[measure] if measure in result else measure(designs)
             value[:, number] = sign * (own.value - bound)
             for i, name in enumerate(space.names):
                 if name in own.gradient:
@@ -135,8 +135,8 @@ def _transmission(designs: Mapping[str, Any], side: float) -> Measured:
 
 def _ratio(designs: Mapping[str, Any], side: float) -> Measured:
     """Advance over return angle, or return over advance."""
-    found = measured(["advance_angle", "return_angle"], designs)
-    over, under = (found[n] for n in (("advance_angle", "return_angle")[:: int(side)]))
+    result = measured(["advance_angle", "return_angle"], designs)
+    over, under = (result[n] for n in (("advance_angle", "return_angle")[:: int(side)]))
     ratio = over.value / under.value
     slopes = {p: (over.gradient[p] - ratio * under.gradient[p]) / under.value for p in LENGTHS}
     return Measured(ratio, slopes)

@@ -67,8 +67,8 @@ class LocalSearch:
         corners = np.array(list(product((0.0, 1.0), repeat=min(n, 6))))
         corners = np.hstack([corners, np.full((len(corners), n - corners.shape[1]), 0.5)])
         self.places = np.vstack([spread.random_base2(SCAN), corners, np.full((1, n), 0.5)])
-        found = self.functions(self.places).value
-        sizes = np.where(np.isfinite(found), np.abs(found), np.nan)
+        result = self.functions(self.places).value
+        sizes = np.where(np.isfinite(result), np.abs(result), np.nan)
         middle = np.array([np.nanmedian(s) if np.isfinite(s).any() else 1.0 for s in sizes.T])
         bounds = np.array([0.0] * self.count + [abs(c.bound) for c in self.limits])
         self.scale = np.where(np.maximum(middle, bounds) > 0.0, np.maximum(middle, bounds), 1.0)
@@ -78,7 +78,7 @@ class LocalSearch:
         sizes[:] = [
             max(size for size, other in zip(sizes, keys, strict=True) if other == key) for key in keys
         ]
-        self.scanned = found / self.scale
+        self.scanned = result / self.scale
 
     def starts(self, count: int) -> list[Array]:
         """The best points of the scan, at some distance from each other."""
@@ -117,16 +117,16 @@ class LocalSearch:
 
     def without_value(self, z: Array) -> Array:
         """Flags of the designs that keep the limits and have no finite objective."""
-        found = self.functions(z).value / self.scale
-        lost = ~np.isfinite(found[:, : self.count]).all(axis=1)
-        return np.asarray(lost & (self._violation(found[:, self.count :]) <= SATISFIED))
+        result = self.functions(z).value / self.scale
+        lost = ~np.isfinite(result[:, : self.count]).all(axis=1)
+        return np.asarray(lost & (self._violation(result[:, self.count :]) <= SATISFIED))
 
     # ---- one run ----------------------------------------------------------------------------------
 
     def scaled(self, z: Array) -> tuple[Array, Array]:
         """Scaled values and gradients of all functions at one point, always finite."""
-        found = self.functions(np.clip(np.nan_to_num(z, nan=0.5), 0.0, 1.0))
-        value, slope = found.value[0] / self.scale, found.slope[0] / self.scale[:, None]
+        result = self.functions(np.clip(np.nan_to_num(z, nan=0.5), 0.0, 1.0))
+        value, slope = result.value[0] / self.scale, result.slope[0] / self.scale[:, None]
         bad = ~np.isfinite(value)
         value = np.where(bad, np.where(np.arange(value.size) < self.count, WORST, -WORST), value)
         return value, np.where(np.isfinite(slope), slope, 0.0)
@@ -165,14 +165,14 @@ class LocalSearch:
             options={"maxiter": STEPS, "ftol": FLAT},
         )
         z = np.clip(np.nan_to_num(answer.x[:n], nan=0.5), 0.0, 1.0)
-        found = self.judged(z)
+        result = self.judged(z)
         for number in self.margins():
             if self.scaled(z)[0][self.count + number] < 0.0:  # overshot
                 other = self.judged(self.at_limit(z, number))
-                found = min(found, other, key=lambda each: each.violation)
-        return found
+                result = min(result, other, key=lambda each: each.violation)
+        return result
 
-    def probed(self, found: Candidate) -> Candidate:
+    def probed(self, result: Candidate) -> Candidate:
         """Continue from an unsettled point without derivatives (COBYLA): two peaks may tie in a kink."""
         m = self.count
         both = np.flatnonzero(self.equal)
@@ -181,15 +181,15 @@ class LocalSearch:
             value = self.scaled(z)[0][m:]
             return np.concatenate([value, -value[both], z, 1.0 - z])
 
-        other = self.judged(_probe(lambda z: self.scaled(z)[0][:m].max(), found.z, limits, 0.01))
-        better = other.violation <= BROKEN and other.value < found.value
-        gain = (found.value - other.value) / self.scale[0] if better else 0.0
-        best = other if better else found
+        other = self.judged(_probe(lambda z: self.scaled(z)[0][:m].max(), result.z, limits, 0.01))
+        better = other.violation <= BROKEN and other.value < result.value
+        gain = (result.value - other.value) / self.scale[0] if better else 0.0
+        best = other if better else result
         beside = np.vstack([np.eye(best.z.size), -np.eye(best.z.size)]) * NEAR
         edge = self.without_value(np.clip(best.z + beside, 0.0, 1.0)).any()
         return best._replace(kink=bool(gain <= BROKEN), edge=bool(edge))
 
-    def nearest(self, found: Candidate) -> Candidate:
+    def nearest(self, result: Candidate) -> Candidate:
         """The design that breaks the limits least, found without derivatives from the best of the scan."""
         m = self.count
 
@@ -198,7 +198,7 @@ class LocalSearch:
 
         start = self.places[np.argmin(self._violation(self.scanned[:, m:]))]
         probed = _probe(broken, start, lambda z: np.append(z, 1.0 - z), 0.1)
-        return self.judged(min((found.z, start, probed), key=broken))
+        return self.judged(min((result.z, start, probed), key=broken))
 
     # ---- optimality -------------------------------------------------------------------------------
 
@@ -223,30 +223,30 @@ class LocalSearch:
         counts = np.append(live, active)
         if not np.isfinite(self.functions(z).slope[0][counts]).all():  # without slopes nothing is known
             residual = 1.0
-        found = solution[live.sum() :] * size * self.scale[0]
+        result = solution[live.sum() :] * size * self.scale[0]
         many, some = int(active.sum()), int((active & self.equal).sum())
         multipliers = np.zeros(len(self.limits) + 2 * n)
         own = np.zeros(len(self.limits))
-        own[active] = found[:many]
-        own[active & self.equal] -= found[many : many + some]
+        own[active] = result[:many]
+        own[active & self.equal] -= result[many : many + some]
         multipliers[: len(own)] = own / self.scale[m:]
-        multipliers[len(own) :][at_end] = found[many + some :]
+        multipliers[len(own) :][at_end] = result[many + some :]
         violation = float(self._violation(limits))
         finite = np.isfinite(self.functions(z).value[0][:m]).all()
         top = float(largest * self.scale[0]) if finite else np.inf
         return Candidate(z, top, violation, residual, multipliers)
 
-    def polished(self, found: Candidate) -> Candidate:
+    def polished(self, result: Candidate) -> Candidate:
         """The optimality conditions with these limits active, solved for the last digits."""
         m = self.count
-        value, slope = self.scaled(found.z)
+        value, slope = self.scaled(result.z)
         live = np.flatnonzero(value[:m] >= value[:m].max() - 1e-4 * max(1.0, abs(value[:m].max())))
-        lambdas = found.multipliers[: len(self.limits)]
+        lambdas = result.multipliers[: len(self.limits)]
         active = np.flatnonzero(self.equal | ((np.abs(value[m:]) <= NEAR) & (lambdas != 0.0)))
-        free = np.flatnonzero((found.z > NEAR) & (found.z < 1.0 - NEAR))
-        fixed = np.where(found.z <= NEAR, 0.0, np.where(found.z >= 1.0 - NEAR, 1.0, found.z))
+        free = np.flatnonzero((result.z > NEAR) & (result.z < 1.0 - NEAR))
+        fixed = np.where(result.z <= NEAR, 0.0, np.where(result.z >= 1.0 - NEAR, 1.0, result.z))
         if not free.size or len(live) - 1 + len(active) > free.size:
-            return self._better(found, fixed)
+            return self._better(result, fixed)
 
         def place(y: Array) -> Array:
             z = fixed.copy()
@@ -266,17 +266,19 @@ class LocalSearch:
 
         weights = np.full(live.size - 1, 1.0 / live.size)
         begin = np.concatenate(
-            [found.z[free], weights, lambdas[active] * self.scale[m + active] / size / self.scale[0]]
+            [result.z[free], weights, lambdas[active] * self.scale[m + active] / size / self.scale[0]]
         )
         answer = root(conditions, begin, method="hybr", options={"xtol": 1e-13, "maxfev": 60})
         z = place(answer.x)
-        moved = bool(np.abs(z - found.z).max() < 1e-2) and bool(((z >= 0.0) & (z <= 1.0)).all())
-        return self._better(found, z) if moved else found
+        moved = bool(np.abs(z - result.z).max() < 1e-2) and bool(((z >= 0.0) & (z <= 1.0)).all())
+        return self._better(result, z) if moved else result
 
-    def _better(self, found: Candidate, z: Array) -> Candidate:
+    def _better(self, result: Candidate, z: Array) -> Candidate:
         other = self.judged(z)
-        worth = other.violation <= max(found.violation, 1e-9) and other.residual <= max(found.residual, 1e-9)
-        return other if worth and np.isfinite(other.value) else found
+        worth = other.violation <= max(result.violation, 1e-9) and other.residual <= max(
+            result.residual, 1e-9
+        )
+        return other if worth and np.isfinite(other.value) else result
 
 
 def _probe(

@@ -244,5 +244,5 @@ def _between(starts: Array, score: Array) -> Array:
     chosen = np.argsort(-score, axis=1, kind="stable")[:, :many]
     a, b = np.take_along_axis(starts, chosen, 1), np.take_along_axis(starts, chosen + 1, 1)
     share = np.arange(1, SPLIT + 1) / (SPLIT + 1.0)
-    found: Array = (a[..., None] + (b - a)[..., None] * share).reshape(len(starts), -1)
-    return found
+    result: Array = (a[..., None] + (b - a)[..., None] * share).reshape(len(starts), -1)
+    return result

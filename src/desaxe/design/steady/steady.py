@@ -130,14 +130,14 @@ def _row(row: Input, value: Any) -> Array:
     return array
 
 
-def _of_sliders(sliders: Any, given: dict[str, Any]) -> tuple[dict[str, Any], Any]:
+def _of_sliders(sliders: Any, inputs: dict[str, Any]) -> tuple[dict[str, Any], Any]:
     """The inputs, and the turn of several sliders, which has all of them but the speed."""
     check_sliders(sliders)
     if sliders is None:
-        return given, None
-    turn = sliders.turn("steady", {n: v for n, v in given.items() if n not in SPEEDS})
+        return inputs, None
+    turn = sliders.turn("steady", {n: v for n, v in inputs.items() if n not in SPEEDS})
     if turn.has_friction:
         raise ValueError("steady: of several sliders without friction, mu = 0")
     if turn.sliders.follows_speed:
         raise ValueError("steady: loads of several sliders must not depend on the speed")
-    return {n: v for n, v in given.items() if n in SPEEDS}, turn
+    return {n: v for n, v in inputs.items() if n in SPEEDS}, turn

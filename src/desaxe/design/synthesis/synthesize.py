@@ -122,8 +122,8 @@ def synthesize(
     thirds = {"BC": BC, "AB": AB, "max_pressure_angle": max_pressure_angle}
     given = [name for name, value in thirds.items() if value is not None]
     if len(given) != 1:
-        got = " and ".join(given) or "none"
-        raise TypeError(f"synthesize: expected just one of {', '.join(THIRDS)}, got {got}")
+        result = " and ".join(given) or "none"
+        raise TypeError(f"synthesize: expected just one of {', '.join(THIRDS)}, got {result}")
     if not isinstance(slow_stroke, (int, float)) or slow_stroke not in (1, -1):
         raise ValueError(f"slow_stroke = {shown(slow_stroke)}: it is +1 (outward) or -1 (inward)")
     (third,) = given
@@ -150,20 +150,20 @@ def _wish(name: str, value: Any) -> float:
 
 def _result(third: str, value: float, slow_stroke: int, answer: Fitting) -> Answer:
     count = len(answer.designs)
-    told = answer.why or f"{count} design{'s' if count != 1 else ''}"
+    message = answer.why or f"{count} design{'s' if count != 1 else ''}"
     if not answer.why and not count:
         wish, high = (amount(third, x, ".6g", says_unit=True) for x in (value, answer.high))
         low = amount(third, answer.low, ".6g", says_unit=answer.high == inf)
         ends = low + " on" if answer.high == inf else low + " to " + high
-        told = f"none: {third} = " + wish + ", designs of this stroke and time ratio have it from " + ends
+        message = f"none: {third} = " + wish + ", designs of this stroke and time ratio have it from " + ends
     solutions = sorted(answer.designs, key=lambda design: design["BC"])
-    found = {
+    result = {
         "solutions": [{**design, "ec": slow_stroke * design["ec"]} for design in solutions],
         "limits": {third: (answer.low, answer.high)},
         "status": 1 if not count else 2 if answer.why else 0,
-        "message": told,
+        "message": message,
     }
-    return Answer(found, {"solutions": units_of(LENGTHS), "limits": units_of([third])})
+    return Answer(result, {"solutions": units_of(LENGTHS), "limits": units_of([third])})
 
 
 # ---- one more wish ------------------------------------------------------------------------------
@@ -215,8 +215,8 @@ def _of_lean(family: Family, angle: float) -> Fitting:
     ends = [family.t**2, least, 1.0]
     if excess(least) >= 0.0:
         return Fitting([family.design(least)], low, pi / 2)
-    found = [root(excess, a, b) for a, b in pairwise(ends)]
-    return Fitting([family.design(x) for x in found], low, pi / 2)
+    result = [root(excess, a, b) for a, b in pairwise(ends)]
+    return Fitting([family.design(x) for x in result], low, pi / 2)
 
 
 _FORMS: dict[str, Callable[[Family, float], Fitting]] = {

@@ -31,8 +31,8 @@ class SampledQuantity(NamedTuple):
         """The values over samples; NaN where undefined."""
         if not self.at_point:
             return np.asarray(self._measured(columns).value, float)
-        found = evaluate(self.at_point, branch=self.branch, **self.fixed, **columns)
-        return np.broadcast_to(found, len(next(iter(columns.values()))))
+        result = evaluate(self.at_point, branch=self.branch, **self.fixed, **columns)
+        return np.broadcast_to(result, len(next(iter(columns.values()))))
 
     def slopes(self, columns: Mapping[str, Any]) -> Array:
         """The exact first derivatives over samples, one column for each input that varies."""

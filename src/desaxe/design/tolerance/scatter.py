@@ -22,8 +22,8 @@ class Tolerance(Answer):
 
     codes = ToleranceStatus
 
-    def __init__(self, found: Mapping[str, Any], name: Any) -> None:
-        super().__init__(found, _units(name, found))
+    def __init__(self, result: Mapping[str, Any], name: Any) -> None:
+        super().__init__(result, _units(name, result))
         self.name = " of ".join(map(str, name)) if isinstance(name, (tuple, list)) else str(name)
 
     @property
@@ -39,10 +39,12 @@ class Tolerance(Answer):
         spread += f" ({first['std']:.4g} by derivatives)" if first["std"] else f" ({UNSEEN})"
         if ends:
             spread += f", 95 % lie in {ends[1]:.6g} ... {ends[3]:.6g}"
-        told = f"; status {self['status']}: {ToleranceStatus(self['status']).words}" if self["status"] else ""
+        message = (
+            f"; status {self['status']}: {ToleranceStatus(self['status']).words}" if self["status"] else ""
+        )
         return "\n".join(
             [
-                f"{self.name} is {self['value']:.6g}{unit} with every input at its mean{told}",
+                f"{self.name} is {self['value']:.6g}{unit} with every input at its mean{message}",
                 spread,
                 self._causes(),
             ]
@@ -62,13 +64,13 @@ class Tolerance(Answer):
         return super().__repr__()
 
 
-def _units(name: Any, found: Mapping[str, Any]) -> dict[str, Any]:
+def _units(name: Any, result: Mapping[str, Any]) -> dict[str, Any]:
     """The units of the scatter of a quantity or measure."""
     own = unit_of(name)
     scatter = dict.fromkeys(SCATTER, own)
     return {
         "value": own,
-        "gradient": slopes_of(name, found["gradient"]),
+        "gradient": slopes_of(name, result["gradient"]),
         **dict.fromkeys(("first_order", "monte_carlo"), scatter),
         "worst_case": dict.fromkeys(("lower", "upper"), own),
     }

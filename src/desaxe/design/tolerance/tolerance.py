@@ -125,8 +125,8 @@ def _answer(
     beside = function.beside(centre, steps)
     first, shares = _propagated(value, slopes, rough)
     progress.next(f"{count} samples")
-    found = _sampled(function, rough, count, seed)
-    drawn = _monte_carlo(found)
+    result = _sampled(function, rough, count, seed)
+    drawn = _monte_carlo(result)
     progress.next("worst case")
     answer = {
         "value": value,
@@ -134,7 +134,7 @@ def _answer(
         "first_order": first,
         "monte_carlo": drawn,
         "contributions": dict(sorted(shares.items(), key=lambda item: -item[1])),
-        "worst_case": _worst_case(function, value, slopes, rough, found, covered),
+        "worst_case": _worst_case(function, value, slopes, rough, result, covered),
         "agreement": _agreement(first, drawn),
         "status": int(_status(value, drawn["infeasible"], beside)),
     }
@@ -158,15 +158,15 @@ def _check(distribution: str, sigmas: Any, samples: Any, seed: Any) -> None:
     whole_number("seed", seed, 0, 2**32 - 1)
 
 
-def _function(name: Any, given: Mapping[str, Any], branch: int) -> SampledQuantity:
-    several, state = "sliders" in given, "omega" in given
+def _function(name: Any, inputs: Mapping[str, Any], branch: int) -> SampledQuantity:
+    several, state = "sliders" in inputs, "omega" in inputs
     design = isinstance(name, (tuple, list)) or (is_named(name) and (name != "margin" or not several))
-    fixed = {n: v for n, v in given.items() if not isinstance(v, Inexact)}
-    varying = tuple(n for n in given if n not in fixed)
-    if design and name != "margin" and "theta" in given:
+    fixed = {n: v for n, v in inputs.items() if not isinstance(v, Inexact)}
+    varying = tuple(n for n in inputs if n not in fixed)
+    if design and name != "margin" and "theta" in inputs:
         raise ValueError(f"theta: {name} is of a whole turn")
     for length in LENGTHS if design and not several else ():
-        if length not in given:
+        if length not in inputs:
             as_number(length, None, LENGTHS, ("tolerance",))
     if not design and not several:
         quantity(name, state)
@@ -259,8 +259,8 @@ def _enclosed(name: str, ranges: Mapping[str, Any], branch: int) -> tuple[float,
             from ...enclosure.enclose import enclose
     except ModuleNotFoundError:  # the extra `rigorous`
         return None
-    found = enclose(name, branch=branch, boxes=BOXES, **ranges)
-    ends = found["lower"], found["upper"]
+    result = enclose(name, branch=branch, boxes=BOXES, **ranges)
+    ends = result["lower"], result["upper"]
     return ends if np.isfinite(ends).all() else None
 
 

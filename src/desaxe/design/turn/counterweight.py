@@ -122,19 +122,19 @@ def _harmonics(turn: Turn, forces: tuple[str, str]) -> Harmonics:
     """The first harmonics of the force, and the largest force under a counterweight."""
     panels = turn.panels(forces)
     z = panels.values[forces[1]] + 1j * panels.values[forces[0]]
-    found = np.array(
+    result = np.array(
         [panels.integral(z * np.exp(-1j * n * panels.x)) / turn.angle for n in (0, 1, 2, 0, -1, -2)]
     )
-    found[np.abs(found) <= max(map(turn.floor, forces))] = 0.0
-    forward, backward = found[:3], found[3:]
+    result[np.abs(result) <= max(map(turn.floor, forces))] = 0.0
+    forward, backward = result[:3], result[3:]
 
     def peak(weight: complex) -> float:
         def squared(theta: Array, row: Array) -> dict[str, Array]:
             X, Y = (panels.at(theta, panels.values[name]) for name in forces)
             return {"square": np.abs(Y + 1j * X + weight * np.exp(1j * theta)) ** 2}
 
-        found = resolved(squared, panels.edges)
-        return float(np.sqrt(found.extreme(found.values["square"], 1.0)[0]))
+        result = resolved(squared, panels.edges)
+        return float(np.sqrt(result.extreme(result.values["square"], 1.0)[0]))
 
     return forward, backward, RESOLVED * float(np.abs(z).max()), peak
 

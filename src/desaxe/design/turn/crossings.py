@@ -86,10 +86,10 @@ def crossings(
     )
     numbers, level = {n: rows.each(v) for n, v in rows.numbers.items()}, rows.each(rows.more["value"])
     cycle = Cycle(numbers, rows.loads, branch, turns_of("crossings", rows.loads, MOST_TURNS))
-    found = [NONE] * rows.size
+    result = [NONE] * rows.size
     for k in np.flatnonzero(status == 0).tolist():
-        found[k], status[k] = _of_one(cycle.part([k]), name, float(level[k]))
-    return _answer(name, found, status, rows.shape, cycle)
+        result[k], status[k] = _of_one(cycle.part([k]), name, float(level[k]))
+    return _answer(name, result, status, rows.shape, cycle)
 
 
 def _status(ec: Array, AB: Array, BC: Array) -> Array:
@@ -105,13 +105,13 @@ def _status_of(margin: Array) -> Array:
 def _of_shaft(name: str, value: Any, turn: Turn) -> Answer:
     """The crossings of a sum over the sliders of a crankshaft."""
     level = read(Input("value", unit_of(name), ""), value, "crossings")
-    found, status = NONE, int(_status_of(np.array(turn.margin)))
+    result, status = NONE, int(_status_of(np.array(turn.margin)))
     if not status:
         try:
-            found, status = _of_one(turn, name, level, turn.floor(name))
+            result, status = _of_one(turn, name, level, turn.floor(name))
         except NoCycleError:
             status = int(CrossingStatus.NO_VALUE)
-    return _answer(name, [found], np.array([status], np.int8), (), turn)
+    return _answer(name, [result], np.array([status], np.int8), (), turn)
 
 
 def _of_one(cycle: Cycle, name: str, level: float, floor: float = 0.0) -> tuple[Crossings, int]:

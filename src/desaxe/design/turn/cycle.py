@@ -139,8 +139,8 @@ class Cycle:
         numbers = {name: value[row] if np.ndim(value) else value for name, value in self.numbers.items()}
         inputs = {**numbers, **self.loads, **state, **other}
         present = {name: value for name, value in inputs.items() if value is not None}
-        found = evaluate(list(names), theta=theta, branch=self.branch, **present)
-        return {name: np.broadcast_to(found[name], theta.shape) for name in names}
+        result = evaluate(list(names), theta=theta, branch=self.branch, **present)
+        return {name: np.broadcast_to(result[name], theta.shape) for name in names}
 
     def _moving(self, names: Sequence[str]) -> list[tuple[tuple[str, ...], Array]]:
         """A quantity, or two whose difference stays the same at angles of jumps, and these, in rows."""
@@ -154,15 +154,15 @@ class Cycle:
         """Conditions of user-defined quantities, and where each changes its sign."""
         nodes = np.tile(np.linspace(*self.ends, SAMPLES * self.turns + 1), (self.lengths[0].size, 1))
         conditions = conditions_of(used_by(names))
-        found: list[tuple[tuple[str, ...], Array]] = []
+        result: list[tuple[tuple[str, ...], Array]] = []
         for name in (condition.name for condition in conditions):
 
             def value(row: Array, theta: Array, name: str = name) -> Array:
                 return Cycle.values(self, [name], theta, row)[name]
 
             with using(conditions):
-                found.append(((name,), sign_changes(value, nodes)))
-        return found
+                result.append(((name,), sign_changes(value, nodes)))
+        return result
 
     def moves(self, names: Sequence[str], angles: Array) -> dict[str, Array]:
         """By how much each input moves angles of jumps of quantities, in rows [1/its unit]; 0 for others."""

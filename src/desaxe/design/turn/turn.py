@@ -85,16 +85,16 @@ class Turn(Cycle):
         self, names: Sequence[str], theta: Array, row: Any = 0, motion: Motion | None = None, **other: Any
     ) -> dict[str, Array]:
         """Quantities at angles; NoCycleError where there is none."""
-        found = super().values([*names, "status"], theta, row, motion, **other)
-        status = found.pop("status")
-        bad = ~np.isfinite([found[name] for name in names]).all(0)
+        result = super().values([*names, "status"], theta, row, motion, **other)
+        status = result.pop("status")
+        bad = ~np.isfinite([result[name] for name in names]).all(0)
         if bad.any():
             codes, k = status[bad], int(np.argmax(bad))
             why = JAMS if JAMS in codes else int(codes[0]) or 4
             angle = named("theta", theta[k], ".6g")
-            told = f"{', '.join(names)}: no value at " + angle + f" (status {status[k]})"
-            raise NoCycleError(told, why)
-        return found
+            message = f"{', '.join(names)}: no value at " + angle + f" (status {status[k]})"
+            raise NoCycleError(message, why)
+        return result
 
     def moves(self, names: Sequence[str], angles: Array) -> dict[str, Array]:
         """By how much each input moves angles of jumps of quantities; 0 for other angles."""

@@ -42,8 +42,8 @@ class Arcs(NamedTuple):
         places = np.full(np.broadcast_shapes(theta.shape, rows.shape), -1)
         for starts in self.starts.T:
             places += starts[rows] <= theta
-        found: NDArray[np.intp] = self.pieces[rows, places]
-        return found
+        result: NDArray[np.intp] = self.pieces[rows, places]
+        return result
 
 
 def arcs_of(

@@ -55,15 +55,15 @@ class LoadInputs(NamedTuple):
         return result
 
     def at(
-        self, given: Mapping[str, Any], motion: Mapping[str, Any] = MappingProxyType({})
+        self, inputs: Mapping[str, Any], motion: Mapping[str, Any] = MappingProxyType({})
     ) -> dict[str, Any]:
         """The values and derivatives of loads that are no tables, from inputs, and the motion there."""
         result: dict[str, Any] = {}
-        theta = given["theta"]
+        theta = inputs["theta"]
         for name in self.loads if self.functions else ():
             load = self.loads[name]
             if isinstance(load, OfMotion) and self.motion is not None and not tables_of(name, load):
-                result |= self._of_motion(name, load, {**motion, "theta": theta}, given)
+                result |= self._of_motion(name, load, {**motion, "theta": theta}, inputs)
             elif name in self.functions or f"{name}_by_theta" in self.functions:
                 assert isinstance(load, OverTheta)
                 with naming(name):
@@ -72,10 +72,10 @@ class LoadInputs(NamedTuple):
         return {name: value for name, value in result.items() if name in self.functions}
 
     def _of_motion(
-        self, name: str, load: OfMotion, motion: Mapping[str, Any], given: Mapping[str, Any]
+        self, name: str, load: OfMotion, motion: Mapping[str, Any], inputs: Mapping[str, Any]
     ) -> dict[str, Any]:
         """A load over columns of the motion, and its derivatives by the parameters that are needed."""
-        way = ahead(motion, way_of(given)) if load.has_ways else 1.0
+        way = ahead(motion, way_of(inputs)) if load.has_ways else 1.0
         with naming(name):
             value, by = load.partials({**motion, "way": way})
         by_name = f"{name}_by_"
@@ -113,16 +113,16 @@ def request_of(
     return under_loads(plan, numbers, branch, accuracy, known)
 
 
-def plan_at(names: Sequence[str], loads: Mapping[str, Load], given: Container[str]) -> LoadPlan:
+def plan_at(names: Sequence[str], loads: Mapping[str, Load], inputs: Container[str]) -> LoadPlan:
     """The plan for names under loads; without an angle, a status has no friction and no load."""
-    at_angle = "theta" in given
+    at_angle = "theta" in inputs
     loads = loads if at_angle or tuple(names) != (STATUS,) else {}
-    return plan_of(names, loads, "omega" in given, "mu" in given and at_angle)
+    return plan_of(names, loads, "omega" in inputs, "mu" in inputs and at_angle)
 
 
-def plan_for(names: Sequence[str], given: Mapping[str, Any]) -> tuple[dict[str, Any], LoadPlan]:
+def plan_for(names: Sequence[str], inputs: Mapping[str, Any]) -> tuple[dict[str, Any], LoadPlan]:
     """The inputs that are numbers, and the plan for names under the loads that are not."""
-    numbers, loads = split({name: value for name, value in given.items() if value is not None})
+    numbers, loads = split({name: value for name, value in inputs.items() if value is not None})
     return numbers, plan_at(names, loads, numbers)
 
 
@@ -165,10 +165,10 @@ def _with_inputs(lines: LoadLines) -> LoadLines:
     return lines._replace(period=f"{lines.force}_period", first=f"{lines.force}_first")
 
 
-def _sense(given: Mapping[str, Any]) -> TurningSense:
+def _sense(inputs: Mapping[str, Any]) -> TurningSense:
     """The inputs that tell the sense in which the crank turns."""
-    speeds = [name for name in ("omega", "omega0") if given.get(name) is not None]
-    start = "alpha" if speeds == ["omega"] and given.get("alpha") is not None else 0.0
+    speeds = [name for name in ("omega", "omega0") if inputs.get(name) is not None]
+    start = "alpha" if speeds == ["omega"] and inputs.get("alpha") is not None else 0.0
     return TurningSense(speeds[0] if speeds else 1.0, start)
 
 

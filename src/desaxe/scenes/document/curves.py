@@ -49,9 +49,9 @@ def statuses(dataset: "xr.Dataset | None") -> list[str]:
     """The status codes other than ok, in words, with the number of points of each."""
     if dataset is None or "status" not in dataset or dataset["status"].chunks is not None:
         return []
-    found = np.asarray(dataset["status"].values)
-    counts = {status: int((found == int(status)).sum()) for status in PointStatus if status}
-    return [f"{n} of {found.size} points: {status.words}" for status, n in counts.items() if n]
+    result = np.asarray(dataset["status"].values)
+    counts = {status: int((result == int(status)).sum()) for status in PointStatus if status}
+    return [f"{n} of {result.size} points: {status.words}" for status, n in counts.items() if n]
 
 
 def _of_outputs(dataset: "xr.Dataset") -> list[Block]:

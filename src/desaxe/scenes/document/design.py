@@ -227,9 +227,9 @@ def read_tolerances(content: Content, units: UnitSystem, given: Mapping[str, Any
         if name == "theta" or not isinstance(content.inputs.get(name), (float, tuple)):
             known = ", ".join(n for n, v in content.inputs.items() if n != "theta" and not callable(v))
             raise ValueError(f"tolerances: {shown(name)} is no input here that is a number: {known}")
-        wanted = "a number or a text with a unit, half of the range"
+        requested = "a number or a text with a unit, half of the range"
         text = with_unit_of(f"1 {units.of(name).unit}", value)
-        half = read(INPUTS[name], text, "tolerances", wanted)
+        half = read(INPUTS[name], text, "tolerances", requested)
         halves[name] = float(half if isinstance(text, str) else units.of(name).to_si(half))
         if not 0.0 <= halves[name] < inf:
             raise ValueError(f"tolerances: {name} = {shown(value)}: it must be finite and at least 0")

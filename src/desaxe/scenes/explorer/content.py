@@ -91,8 +91,8 @@ def content(
     for name in ("ec", "AB", "BC", "omega" if "omega" in given else "omega0"):
         if name not in given:
             raise TypeError(f"explore: {name} is missing (needed: ec, AB, BC, and omega0 or omega)")
-    wanted = [*shown, *((*KINEMATICS, *(FORCES * is_loaded(given))) if names is None else names)]
-    groups = _grouped(wanted, given)
+    requested = [*shown, *((*KINEMATICS, *(FORCES * is_loaded(given))) if names is None else names)]
+    groups = _grouped(requested, given)
     groups.setdefault("Y", ["Y"])  # of the drawing
     if is_loaded(given):
         groups |= {} if names is not None else {name: [name] for name in VALUES if name not in groups}
@@ -106,23 +106,23 @@ def content(
 
 def _tables(inputs: Mapping[str, Any]) -> dict[str, TableOverTheta | OverY]:
     """The loads that vary with the motion; TypeError for one that is no table."""
-    found = {}
+    result = {}
     for name, load in split(inputs)[1].items():
         if not isinstance(load, (TableOverTheta, OverY)):
             raise TypeError(f"explore: {name} = {load!r}: a page holds numbers and tables, no functions")
-        found[name] = load
-    return found
+        result[name] = load
+    return result
 
 
 def left_out_text(content: PageContent) -> str:
     """The input values that no design of the page has, as text; empty if there are none."""
-    told = []
+    message = []
     for name, values in content.left_out.items():
         own = (content.units or content.fields).of(name)
         numbers = ", ".join(f"{own.shown(value):.6g}" for value in values)
         listed = f"{name} = {numbers} {own.unit}".removesuffix(" 1")
-        told.append(listed if len(values) <= LISTED else f"{len(values)} of the values of {name}")
-    return "; ".join(told)
+        message.append(listed if len(values) <= LISTED else f"{len(values)} of the values of {name}")
+    return "; ".join(message)
 
 
 def _left_out(name: str, value: Value, designs: Iterable[Mapping[str, float]]) -> tuple[float, ...]:
@@ -144,17 +144,17 @@ def forces_first(names: Iterable[str], state: bool) -> list[str]:
     return list(dict.fromkeys([*(forces or FORCES), *lawful]))
 
 
-def _grouped(wanted: Iterable[str], given: Mapping[str, Value]) -> dict[str, list[str]]:
+def _grouped(requested: Iterable[str], given: Mapping[str, Value]) -> dict[str, list[str]]:
     """Group names by quantity: the quantity, its first sensitivities, and further requested ones."""
     state = "omega" in given
-    found: dict[str, list[str]] = {STATE[0]: list(STATE)}
-    for name in wanted:
+    result: dict[str, list[str]] = {STATE[0]: list(STATE)}
+    for name in requested:
         quantity(name, state)
         base = parts(name)[0]
         if base not in STATE:
-            found.setdefault(base, [base, *_sensitivities(base, given)])
-            found[base] += [name] if name not in found[base] else []
-    return found
+            result.setdefault(base, [base, *_sensitivities(base, given)])
+            result[base] += [name] if name not in result[base] else []
+    return result
 
 
 def _sensitivities(base: str, given: Mapping[str, Value]) -> list[str]:

@@ -65,8 +65,8 @@ def explore(
     place = Path(path)
     require_path(place, overwrite)
     own = UnitSystem.read(units)
-    found = content_of(source, names, branch, title, inputs)
-    return write_page(found._replace(units=own) if own else found, place, overwrite)
+    result = content_of(source, names, branch, title, inputs)
+    return write_page(result._replace(units=own) if own else result, place, overwrite)
 
 
 def content_of(
@@ -111,13 +111,13 @@ def _of_scene(source: Any, names: Iterable[str] | None) -> PageContent:
     return page._replace(units=inside.units, fields=known.shown_in)
 
 
-def _value(name: str, given: Any) -> Value:
+def _value(name: str, inputs: Any) -> Value:
     """A number or several, in SI units."""
-    wanted = ("ec", "AB", "BC", "omega0", "alpha", *LOADS)
-    number = as_number(name, given, wanted, ("explore",))
+    requested = ("ec", "AB", "BC", "omega0", "alpha", *LOADS)
+    number = as_number(name, inputs, requested, ("explore",))
     if number is not None:
         return number
-    found = [as_number(name, value, wanted, ("explore",)) for value in given]
-    if not found or None in found:
-        raise TypeError(f"{name} = {given!r}: a number or a list of numbers")
-    return tuple(value for value in found if value is not None)
+    result = [as_number(name, value, requested, ("explore",)) for value in inputs]
+    if not result or None in result:
+        raise TypeError(f"{name} = {inputs!r}: a number or a list of numbers")
+    return tuple(value for value in result if value is not None)

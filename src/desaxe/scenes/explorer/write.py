@@ -114,11 +114,11 @@ def _units(units: UnitSystem) -> dict[str, str]:
 
 def _sizes(units: UnitSystem) -> dict[str, list[str]]:
     """Unit -> what one of it is in SI units, as a fraction."""
-    found = {
+    result = {
         name: units.of_unit(DIMENSIONS[name]) if name in DIMENSIONS else units.of(name)
         for name in units.units
     }
-    return {row.unit: [str(row.si.numerator), str(row.si.denominator)] for row in found.values()}
+    return {row.unit: [str(row.si.numerator), str(row.si.denominator)] for row in result.values()}
 
 
 def _about(name: str, unit: str, meaning: str) -> dict[str, Any]:

@@ -17,11 +17,11 @@ from .functions import spaced
 def own_axes(content: Content, names: Iterable[str]) -> dict[str, list[str]]:
     """The axes of each quantity of a whole design: lengths, and a speed whose sign it uses."""
     axes = [name for name, value in content.inputs.items() if isinstance(value, tuple)]
-    found = {}
+    result = {}
     for name in filter(of_design, names):
         asked = request((name,), dict(content.inputs), content.branch, content.accuracy)
-        found[name] = [axis for axis in axes if axis in (*LENGTHS, *asked.inputs)]
-    return found
+        result[name] = [axis for axis in axes if axis in (*LENGTHS, *asked.inputs)]
+    return result
 
 
 def axes_text(axes: Mapping[str, Sequence[float]]) -> str:

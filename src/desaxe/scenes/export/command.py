@@ -25,8 +25,8 @@ def run_compile(
         lines = [*map(printable, made.diff())]
         print(*lines, *([] if lines else [f"{printable(place)}: fresh"]), sep="\n")
         if lines:
-            told = f"{printable(place)} is not what {printable(source)} gives"
-            print(f"{told}: write it again without --check", file=sys.stderr)
+            message = f"{printable(place)} is not what {printable(source)} gives"
+            print(f"{message}: write it again without --check", file=sys.stderr)
         return 1 if lines else 0
     made.write(overwrite)
     print(*map(printable, made.summary()), sep="\n")

@@ -75,13 +75,13 @@ def reductions(name, rows, along, places, kinds):
     """The reductions of rows by name; what has no value (NaN) is skipped and counted."""
     good = rows == rows
     count = good.sum(axis=-1)
-    found = {}
+    result = {}
     for kind in kinds:
         if kind in ("mean", "rms"):
             values = where(good, rows, 0.0)
             with errstate(all="ignore"):  # infinities
                 mean = exact_mean(values, count) if kind == "mean" else root_mean_square(values, count)
-            found[f"{name}_{kind}"] = where(count > 0, mean, nan)
+            result[f"{name}_{kind}"] = where(count > 0, mean, nan)
             continue
         score = abs(rows) if kind == "absmax" else -rows if kind == "min" else rows
         # Before the first -inf that is a number there may be one that stands for a NaN.
@@ -89,9 +89,9 @@ def reductions(name, rows, along, places, kinds):
         index = first_true(best == best.max(axis=-1, keepdims=True, initial=-inf))
         index = where(take_along(good, index), index, first_true(good))
         value = where(count > 0, take_along(rows, index), nan)
-        found[f"{name}_{kind}"] = abs(value) if kind == "absmax" else value
-        found[f"{name}_{kind}_{along}"] = append(places, nan)[where(count > 0, index, places.size)]
-    return found | {f"{name}_skipped": rows.shape[-1] - count}
+        result[f"{name}_{kind}"] = abs(value) if kind == "absmax" else value
+        result[f"{name}_{kind}_{along}"] = append(places, nan)[where(count > 0, index, places.size)]
+    return result | {f"{name}_skipped": rows.shape[-1] - count}
 
 
 def first_true(rows):
@@ -158,9 +158,9 @@ def extremum(search, kind, ends, axes, given, inputs, slopes):
     in_parts(work, size, 1_000 * size, given["threads"])
     value = abs(out[0]) if kind == 0 else out[0]
     sign = where(out[0] < 0.0, -1.0, 1.0) if kind == 0 else 1.0
-    found = {"value": value, "theta": theta, "status": where(isfinite(value), 0, 4).astype(int8)}
-    found |= {name: sign * out[row] if row else 0.0 * value for name, row in slopes.items()}
-    return {name: column.reshape(shape) for name, column in found.items()}
+    result = {"value": value, "theta": theta, "status": where(isfinite(value), 0, 4).astype(int8)}
+    result |= {name: sign * out[row] if row else 0.0 * value for name, row in slopes.items()}
+    return {name: column.reshape(shape) for name, column in result.items()}
 
 
 def require_turning(columns, low, high):

@@ -42,14 +42,14 @@ RUBBING = f"""def motion(M_eff, T_in, torque, Y_wrt_theta, N_C, N_C_wrt_alpha, l
 SMOOTH, CONTACT = ("M_eff", "T_in"), ("Y_wrt_theta", "N_C", "N_C_wrt_alpha", "lean")
 
 
-def has_masses(given: Mapping[str, object]) -> bool:
+def has_masses(inputs: Mapping[str, object]) -> bool:
     """True where something has a mass, so that a torque has an effect."""
-    return any(given.get(name, 0.0) != 0.0 for name in MASSES)
+    return any(inputs.get(name, 0.0) != 0.0 for name in MASSES)
 
 
-def numbers_of(given: Mapping[str, object]) -> dict[str, float]:
+def numbers_of(inputs: Mapping[str, object]) -> dict[str, float]:
     """The lengths, masses and loads that an acceleration has folded in: numbers, and 0 for what is absent."""
-    values = {n: given.get(n, 0.0) for n in (*LENGTHS, *LOADS) if n in given or n not in CENTRES}
+    values = {n: inputs.get(n, 0.0) for n in (*LENGTHS, *LOADS) if n in inputs or n not in CENTRES}
     return {name: value for name, value in values.items() if isinstance(value, float)}
 
 
@@ -103,14 +103,14 @@ def _base(
     return with_totals(base, dict(zip(every, base.outputs, strict=True)), lines, totals, TurningSense("way"))
 
 
-def motion_solver(given: Mapping[str, object], branch: int, loads: Mapping[str, Load]) -> Solver:
+def motion_solver(inputs: Mapping[str, object], branch: int, loads: Mapping[str, Load]) -> Solver:
     """The acceleration as a function of its own arguments and those of a module."""
-    told = (
+    message = (
         ("N*m", "torque on the crank"),
         ("rad", "crank angle"),
         ("rad/s", "speed"),
         ("1", "sign of the speed"),
     )
-    own = zip(("torque", "theta", "omega", "way"), told, strict=True)
-    law = motion(given, branch, loads)
+    own = zip(("torque", "theta", "omega", "way"), message, strict=True)
+    law = motion(inputs, branch, loads)
     return Solver(tuple(Symbol(name, *each) for name, each in own), law)

@@ -52,7 +52,7 @@ def carried(content: Content) -> list[ExportedPeak]:
     if any(callable(value) for value in content.inputs.values()):
         return []  # a module under loads has their tables in its formulas
     named = zip(group_names(content.peaks), content.peaks, strict=True)
-    return [found for name, one in named if (found := _exported(name, one, content)) is not None]
+    return [result for name, one in named if (result := _exported(name, one, content)) is not None]
 
 
 def _exported(name: str, one: Peak, content: Content) -> ExportedPeak | None:

@@ -73,9 +73,9 @@ class PortableRequest(NamedTuple):
 
     def stable(self, accuracy: str) -> Program:
         """The Program of the shown names that is right everywhere."""
-        found = self.program(accuracy)
-        assert found is not None
-        return found
+        result = self.program(accuracy)
+        assert result is not None
+        return result
 
     def program(self, accuracy: str, plain: bool = False) -> Program | None:
         """The Program of the shown names; `plain` in plain forms, None where these are the stable ones."""
@@ -117,8 +117,8 @@ def module_of(scene: Scene, order: Order, more: Sequence[str] = (), opened: Sequ
     used = {*needed, *(tables_in(moves.solve) if moves else ())}
     every = {name: table for item in loads.items() for name, table in tables_of(*item).items()}
     tables = {n: table.arrays() for n, table in every.items() if n in used}
-    told = (derivatives, values, solvers(dict(fixed)), own, moves, tables)
-    return Module(order.name, head, inputs, outputs, forms, constants(), *told)
+    message = (derivatives, values, solvers(dict(fixed)), own, moves, tables)
+    return Module(order.name, head, inputs, outputs, forms, constants(), *message)
 
 
 def require_outputs(scene: Scene) -> None:
@@ -132,10 +132,10 @@ def require_outputs(scene: Scene) -> None:
 
 def left_out(content: Content, reduction: bool = True) -> list[str]:
     """The parts of a scene that a compiled module leaves out, by name."""
-    found = [f"[[peak]] {peak.quantity}" for peak in content.peaks]
+    result = [f"[[peak]] {peak.quantity}" for peak in content.peaks]
     if content.reduction is not None and (reduction or content.fused is None):
-        found.append(f"[reduce] over {', '.join(content.reduction.axes)}")
-    return list(dict.fromkeys(found))
+        result.append(f"[reduce] over {', '.join(content.reduction.axes)}")
+    return list(dict.fromkeys(result))
 
 
 def heading(scene: Scene, command: str) -> tuple[str, ...]:
@@ -185,9 +185,9 @@ def asked_of(content: Content, names: Iterable[str]) -> PortableRequest:
     return PortableRequest(asked, tuple(fixed.items()), shown, plan.loads, totals, _way(given))
 
 
-def _way(given: Mapping[str, Any]) -> TurningSense:
+def _way(inputs: Mapping[str, Any]) -> TurningSense:
     """The speed that tells the way of turning: numbers as they are, open inputs by their names."""
-    own = {n: n if isinstance(value, tuple) else value for n, value in given.items()}
+    own = {n: n if isinstance(value, tuple) else value for n, value in inputs.items()}
     if "omega" in own:
         return TurningSense(own["omega"], own.get("alpha", 0.0))
     return TurningSense(own["omega0"])
@@ -230,16 +230,16 @@ def _derivatives(
             return False
         return True
 
-    found: dict[str, dict[str, str]] = {}
+    result: dict[str, dict[str, str]] = {}
     stack = list(content.outputs)
     while stack:
         name = stack.pop()
-        if name not in found:
+        if name not in result:
             by = {p: sensitivity(name, p) for p in arguments if p in ORDER}
-            found[name] = {p: each for p, each in by.items() if exists(each)}
-            stack += found[name].values()
+            result[name] = {p: each for p, each in by.items() if exists(each)}
+            stack += result[name].values()
     values = {}
-    for name in found:
+    for name in result:
         program = asked_of(content, (name,)).stable("standard")
         values[name] = guard_inputs(program, program.inputs, LEAST, {})
-    return found, values
+    return result, values

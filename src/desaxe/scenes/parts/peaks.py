@@ -127,8 +127,8 @@ def peak_of(key: str, table: Mapping[str, Any], inputs: Mapping[str, Value], uni
     if name == STATUS or of_design(name):
         raise SceneError(f"{place} = {shown(name)}: it has no peak over theta")
     slope = sensitivity(name, "theta")  # whose inputs a peak needs
-    wanted = (name, slope) if has(slope, state) else (name,)
-    needed = require(place, [n for n in needs_of(wanted, there) if n != "theta"], name, there)
+    requested = (name, slope) if has(slope, state) else (name,)
+    needed = require(place, [n for n in needs_of(requested, there) if n != "theta"], name, there)
     if "omega" in parts(name)[1] and "omega" not in needed:  # V_C_wrt_omega: it has no effect
         needed.append("omega")
     for n in over:

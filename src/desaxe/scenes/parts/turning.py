@@ -44,14 +44,14 @@ def feasibility_of(inputs: Mapping[str, Value]) -> FeasibilityResult | None:
     margins: Any = evaluate("margin", **columns)
     rows = np.flatnonzero(margins < 0.0)
     designs = [{name: float(column[row]) for name, column in columns.items()} for row in rows[:MOST_SHOWN]]
-    found = tuple(Infeasible(one, _gaps(feasibility(**one)["theta_intervals"])) for one in designs)
+    result = tuple(Infeasible(one, _gaps(feasibility(**one)["theta_intervals"])) for one in designs)
     AB, BC = inputs["AB"], inputs["BC"]
     limit = (
         None
         if isinstance(AB, tuple) or isinstance(BC, tuple)
         else feasibility(ec=0.0, AB=AB, BC=BC)["margin"]
     )
-    return FeasibilityResult(margins.size, margins.size - rows.size, found, limit)
+    return FeasibilityResult(margins.size, margins.size - rows.size, result, limit)
 
 
 def _gaps(intervals: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:

@@ -130,8 +130,8 @@ def _storage(
     if store is not None and file is not None:
         raise SceneError(f"results.store = {shown(store)}: give a store or a file (results.data), not both")
     if store is not None and not (outputs or data.get("peak")):
-        told = "give outputs or [[peak]], or results.data for a steady state alone"
-        raise SceneError(f"results.store = {shown(store)}: there is nothing to store; {told}")
+        message = "give outputs or [[peak]], or results.data for a steady state alone"
+        raise SceneError(f"results.store = {shown(store)}: there is nothing to store; {message}")
     with _refusing("results."):
         memory = bytes_of(results.get("memory"))
         if chunks is not None and outputs:

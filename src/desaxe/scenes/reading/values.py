@@ -196,11 +196,11 @@ def with_others(inputs: Mapping[str, Value], other: Mapping[str, Value]) -> dict
 
 def single(key: str, names: Iterable[str], inputs: Mapping[str, Value]) -> dict[str, Any]:
     """Inputs that must be single: a number or a load that varies; SceneError for a list or range."""
-    found: dict[str, Any] = {}
+    result: dict[str, Any] = {}
     for name in names:
         value = inputs[name]
         if isinstance(value, tuple):
             family = f", or family.{name} for a curve of each" if key.startswith("picture") else ""
             raise SceneError(f"{key}: {name} has {len(value)} values, expected one: give at.{name}{family}")
-        found[name] = value
-    return found
+        result[name] = value
+    return result

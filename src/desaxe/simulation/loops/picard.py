@@ -76,15 +76,15 @@ def nodes_table() -> Any:
 
 def still_at_nodes(theta: float, width: float, law: Any, data: Any, table: Any, room: Any) -> None:
     """Inertia, loads and gravity, which depend on the angle alone."""
-    found: Any = empty((OUTPUTS + 1, 16))
+    result: Any = empty((OUTPUTS + 1, 16))
     for i in range(NODES):
         room[ANGLE, i] = theta + width * table[i, PLACE]
-        found[OUTPUTS, i] = reduced(room[ANGLE, i])
-    quantities(found[OUTPUTS], law, data, found)
+        result[OUTPUTS, i] = reduced(room[ANGLE, i])
+    quantities(result[OUTPUTS], law, data, result)
     for i in range(NODES):
-        room[MOBILITY, i], room[HEIGHT, i] = 1.0 / found[INERTIA, i], found[POSITION, i]
+        room[MOBILITY, i], room[HEIGHT, i] = 1.0 / result[INERTIA, i], result[POSITION, i]
         load = piece(law[FORCE:SIDEWAYS], room[ANGLE, i], 0.0, room[HEIGHT, i])[0]
-        room[LOAD, i], room[WEIGHT, i] = load * found[TRAVEL, i], found[GRAVITY, i]
+        room[LOAD, i], room[WEIGHT, i] = load * result[TRAVEL, i], result[GRAVITY, i]
 
 
 def integrate(start: float, width: float, table: Any, room: Any, rate: Any, out: Any) -> None:

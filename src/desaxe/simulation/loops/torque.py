@@ -60,8 +60,8 @@ def _compiled(torque: Callable[..., Any]) -> Any:
     try:
         fast = _fast(torque, arguments)
     except (NumbaError, TypeError) as error:
-        told = str(error).strip().splitlines()
-        why = next((line for line in told if line.strip() and "pipeline" not in line), "")
+        message = str(error).strip().splitlines()
+        why = next((line for line in message if line.strip() and "pipeline" not in line), "")
         raise TypeError(
             "torque: for many designs at once numba must be able to compile the function, and it cannot: "
             f"{why.strip()}; use numbers and math in it, or simulate one design at a time"

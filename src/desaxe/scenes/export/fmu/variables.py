@@ -109,9 +109,9 @@ def check_outputs(names: tuple[str, ...], loads: Mapping[str, Load]) -> None:
         )
 
 
-def first(given: Mapping[str, Any], name: str) -> float:
+def first(inputs: Mapping[str, Any], name: str) -> float:
     """A number of the scene, or the first of a list; 0 without."""
-    value = given.get(name, 0.0)
+    value = inputs.get(name, 0.0)
     return 0.0 if callable(value) else float(value[0] if isinstance(value, tuple) else value)
 
 

@@ -55,13 +55,13 @@ class Archive(Generated):
         """Write the archive; with a warning, and without a binary, where no C compiler is."""
         require_path(self.folder, overwrite)
         contents = {name: text.encode() for name, text in self.texts.items() if text}
-        found = binary_of(contents[f"sources/{self.folder.stem}.c"], self.folder.stem)
-        if isinstance(found, str):
+        result = binary_of(contents[f"sources/{self.folder.stem}.c"], self.folder.stem)
+        if isinstance(result, str):
             why = "an FMU of sources alone, which the importing program compiles"
-            message = f"{printable(self.folder)}: {found}: {why}"
+            message = f"{printable(self.folder)}: {result}: {why}"
             warnings.warn(message, FmuWarning, stacklevel=3)
         else:
-            contents |= dict([found])
+            contents |= dict([result])
         with write_whole(self.folder, overwrite) as staged:
             staged.write_bytes(_zipped(contents))
 
