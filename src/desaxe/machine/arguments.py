@@ -17,7 +17,7 @@ from ..units.text import PLUS_MINUS, with_unit_of
 
 # Arguments that carry no unit of their own name: what they are about is said by their keys.
 EQUATION = "=="  # of a limit of `keep`
-BY_KEY = ("over", "keep", "changes", "sigma")
+BY_KEY = ("over", "keep", "where", "changes", "sigma")
 POSITIONS = {"Y", "s", "V_C", "a_C"}
 
 
