@@ -137,7 +137,9 @@ def test_prediction_report_picture_and_pickle(tmp_path):
     assert np.abs((value - CLEAN) / error).max() < 5.0
     assert "theta_offset [rad]" in result.report()
     assert repr(result) == result.report()
-    result.plot().savefig(tmp_path / "fit.png")
+    picture = result.plot()
+    assert picture.save(tmp_path / "fit.png").stat().st_size > 1000
+    assert picture["a_C"] in picture.axes[0].lines
 
 
 def test_tables_labels_and_files(tmp_path, capsys):

@@ -94,20 +94,27 @@ class Fit(Answer):
         return name if unit == "1" else f"{name} [{unit}]"
 
     def plot(self, figure: Any = None) -> Any:
-        """Measurements, the fitted curve with its 95 % band, and the residuals: a matplotlib Figure."""
+        """Measurements, the fitted curve with its 95 % band, and the residuals.
+
+        Returns a Picture of the fitted curves by quantity. `figure` is a matplotlib Figure to draw in, by
+        default a new one.
+        """
         with needed("plot", "plot"):
             from matplotlib.figure import Figure
+
+            from ...plot import Picture
         data = self._model.data
         figure = figure or Figure(figsize=(8.0, 2.2 + 2.4 * len(data.measured)), layout="constrained")
         axes = figure.subplots(len(data.measured), 2, squeeze=False, sharex=True, width_ratios=(2, 1))
         along = self._system.of(data.course)
         at = along.shown(data.at)
         fine = np.linspace(at.min(), at.max(), 721)
+        curves: dict[str, Any] = {}
         bands = self.predict(**{data.course: fine})
         for (left, right), (q, column) in zip(axes, data.measured.items(), strict=True):
             (value, error), own = bands[q], self._system.of(q)
             left.plot(at, own.shown(column), ".", ms=3, color="0.45", label="measured")
-            left.plot(fine, value, color="tab:blue", label="fitted")
+            (curves[q],) = left.plot(fine, value, color="tab:blue", label="fitted")
             left.fill_between(
                 fine, value - 1.96 * error, value + 1.96 * error, color="tab:blue", alpha=0.3, lw=0
             )
@@ -119,7 +126,7 @@ class Fit(Answer):
         axes[0][0].legend(frameon=False)
         for ax in axes[-1]:
             ax.set_xlabel(f"{'crank angle' if data.course == 'theta' else 'time'} [{along.unit}]")
-        return figure
+        return Picture(axes.ravel().tolist(), curves)
 
 
 def _unit_of(name: str, model: FittedModel) -> QuantityUnit:
