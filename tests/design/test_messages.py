@@ -45,7 +45,7 @@ TABLE = [  # a call and what is good for it; what is changed, the error and its 
     ((dx.drive,), PRESS, [
         ({"fluctuation": 0}, ValueError, "fluctuation = 0"),
         ({"fluctuation": 2.5}, ValueError, "fluctuation = 2.5"),
-        ({"fluctuation": "250 %"}, ValueError, "fluctuation = '250 %': it must be a number above 0"),
+        ({"fluctuation": "250 %"}, ValueError, "fluctuation = '250 %': it must be a number of at least 1e-9"),
         ({"fluctuation": "2 mm"}, ValueError, "fluctuation = '2 mm'"),
         ({"fluctuation": [0.1]}, ValueError, "fluctuation = "),
         ({"omega0": 0.0}, ValueError, "omega0 = 0"),

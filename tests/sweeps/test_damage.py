@@ -49,7 +49,7 @@ def test_chunks_that_are_none_are_refused_in_a_line(stores, kind, value, tmp_pat
     root = tmp_path / "press.zarr"
     with_attribute(whole, root, "chunks", value)
     with pytest.raises(
-        FileExistsError, match=r"press\.zarr: .*its chunks are .*overwrite=True replaces it"
+        FileExistsError, match=r"press\.zarr: .*its chunks are .*--overwrite .overwrite=True. replaces it"
     ) as message:
         sweep(root, kind)
     assert "\n" not in str(message.value)

@@ -128,7 +128,9 @@ def checked(sweep: Sweep, root: Path, overwrite: bool) -> Sweep | None:
         except DAMAGED as error:
             if not overwrite:
                 why = " ".join(str(error).split())
-                raise FileExistsError(f"{printable(root)}: {why}. overwrite=True replaces it") from None
+                raise FileExistsError(
+                    f"{printable(root)}: {why}. --overwrite (overwrite=True) replaces it"
+                ) from None
     sweep.layout.require_memory()
     require_disk(sweep, root, sweep.plan.bytes)
     return None

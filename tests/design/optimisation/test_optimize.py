@@ -325,6 +325,19 @@ def test_an_objective_without_a_value_is_no_design(goal, low, high, status, ec, 
     assert result["value"] == pytest.approx((result["ec"] - 0.02) ** 2, abs=1e-15)
 
 
+@pytest.mark.parametrize(
+    ("theta", "over", "still"), [(90, ("ec",), "ec"), (90, ("ec", "AB"), "ec"), (60, ("ec",), "")]
+)
+def test_an_objective_that_does_not_change_with_a_variable(theta, over, still):
+    ends = {"ec": (0, 0.02), "AB": (0.04, 0.05)}
+    fixed = {n: v for n, v in {"AB": 0.05, "BC": 0.2, "omega0": 10.0}.items() if n not in over}
+    result = dx.optimize(
+        maximize=("at", f"{theta} deg", "V_C"), over={name: ends[name] for name in over}, **fixed
+    )
+    words = f"at {theta} deg V_C does not change with {still}"
+    assert result["message"].endswith(words) if still else "does not change" not in result["message"]
+
+
 def test_a_function_as_an_active_limit_and_as_one_of_several_objectives():
     """By itself in `active`, `multipliers` and `value`, against the closed form of the time ratio."""
 

@@ -20,7 +20,7 @@ from .result import FIGURES, Drive
 
 STALLED = 3
 FLUCTUATION = Input(
-    "fluctuation", "1", "", 1e-9, "a number above 0, at least 1e-09, and below 2, where the crank stops"
+    "fluctuation", "1", "", 1e-9, "a number of at least 1e-9, and below 2, where the crank stops"
 )
 TWO_BALANCES = int(DriveStatus.TWO_FORCE_BALANCES)
 DIFFERENTIATED = tuple(name for name in FIGURES if not name.startswith("theta_"))

@@ -12,11 +12,12 @@ from ...mechanism.names import LENGTHS
 from ...mechanism.quantity_units import slopes_of, unit_of, units_by_name
 from ...mechanism.status import OptimizeStatus
 from ..measures import Measure, checked, text_of
-from .objectives import Goal
+from .objectives import Goal, problems
 from .problem import EQUAL, LOWER, UPPER, Limit, Space
 from .search import NEAR, SATISFIED, Candidate, LocalSearch
 
 FOUND, NONE, UNBOUNDED, EDGE, UNSURE, NO_VALUE = map(int, OptimizeStatus)
+STILL = 1e-12  # of the objective: a slope over the range that is none
 SETTLED = 1e-4  # residual of the optimality conditions
 
 
@@ -115,7 +116,11 @@ def _message(
     names = {key: key if plain[key] else text_of(checked(key)) for key in active}
     held = ", ".join(f"{names[key]} ({side})" for key, side in active.items())
     rest = f", held back by {held}" if held else _inside(space, result.z)
-    return "optimum at " + where + f"{_kink(goal, result)}{rest}{_left_out(what, search)}"
+    return (
+        "optimum at "
+        + where
+        + f"{_kink(goal, result)}{rest}{_left_out(what, search)}{_unmoved(goal, search)}"
+    )
 
 
 def _kink(goal: Goal, result: Candidate) -> str:
@@ -130,6 +135,17 @@ def _left_out(what: str, search: LocalSearch) -> str:
     lost = int(search.without_value(search.places).sum())
     share = f"{lost} of {len(search.places)} designs that were looked at"
     return f"; {what} has no finite value at {share}, which are left out" if lost else ""
+
+
+def _unmoved(goal: Goal, search: LocalSearch) -> str:
+    """The variables with which the objective does not change at any design of the scan, as text."""
+    if len(problems(goal)) > 1:  # of which the search has one
+        return ""
+    value, slope = search.functions(search.places)
+    value, slope = np.abs(value[:, : search.count, None]), np.abs(slope[:, : search.count])
+    still = np.asarray((slope > STILL * value).sum(axis=(0, 1)) == 0)
+    names = [name for name, is_still in zip(search.space.names, still, strict=True) if is_still]
+    return f"; {text_of(goal.measure)} does not change with {', '.join(names)}" if names else ""
 
 
 def _inside(space: Space, z: Any) -> str:

@@ -25,7 +25,7 @@ OWN = ("torque", "flywheel_inertia", "fluctuation", "branch")
 SPEEDS = ("omega0", "omega", "alpha")
 CHUNK = 1000  # designs at once
 FLYWHEEL = Input("flywheel_inertia", "kg*m^2", "", 0.0, "a finite moment of inertia >= 0")
-FLUCTUATION = Input("fluctuation", "1", "", 1e-9, "a number above 0, at least 1e-9, and below 2")
+FLUCTUATION = Input("fluctuation", "1", "", 1e-9, "a number of at least 1e-9, and below 2")
 
 
 @with_known_keywords
