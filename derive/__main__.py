@@ -20,7 +20,7 @@ def target() -> Path:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command; 1 where --check finds a difference."""
-    parser = argparse.ArgumentParser(prog="python -m derive", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m derive", description=__doc__, allow_abbrev=False)
     parser.add_argument(
         "--check", action="store_true", help="build in memory, compare, exit 1 on a difference"
     )

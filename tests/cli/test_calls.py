@@ -39,6 +39,9 @@ SAME = {
     "optimize minimize=absmax:a_C over.BC=300mm:400mm keep.stroke=250mm:260mm": lambda m: m.optimize(
         minimize=("absmax", "a_C"), over={"BC": (0.3, 0.4)}, keep={"stroke": (0.25, 0.26)}
     ),
+    "solve over.AB=10:150 where.stroke=200 --units mm ec=10 BC=350": lambda m: dx.Machine(
+        units="mm", ec=10, BC=350
+    ).solve(over={"AB": ("10 mm", "150 mm")}, where={"stroke": "200 mm"}),
     "simulate torque=20 t_end=0.1s I_crank=0.1": lambda m: m.simulate(torque=20.0, t_end=0.1, I_crank=0.1),
 }
 
@@ -178,6 +181,7 @@ def test_files_and_tables(tmp_path, capsys):
         "design_map stroke ec=0mm:20mm:3 AB=100mm,120mm BC=350mm": 0,
         "design_map stroke ec=0mm:20mm:3 AB=100mm,120mm BC=350mm,360mm": 2,
         f"events {LENGTHS}": 2,
+        f"fit {ROOT}/examples/measured.csv over=AB,BC sigma.Y=0.05mm --machine {ROOT}/examples/motor.toml": 0,
     }
     for number, (line, code) in enumerate(drawings.items()):
         picture = tmp_path / f"{number}.svg"
@@ -201,6 +205,10 @@ COMPLAINTS = {
     f"tolerance stroke {LENGTHS}": 'give one as "NAME=VALUE +- TOLERANCE"',
     f"solve stroke=100mm {LENGTHS}": "desaxe solve: missing over; each is given as over.AB=LOW:HIGH",
     "solve over.AB=10mm:60mm absmax:T_in=1750": "absmax:T_in: a measure is given as where.absmax:T_in=VALUE",
+    "fit examples/measured.csv": "desaxe fit: missing over; each is given as over=AB,BC",
+    "optimize keep.margin=10:": "keep.margin=10:: an open side is none: keep.margin=10:none",
+    "simulate V_C T_in": "V_C: desaxe simulate takes no quantity, only NAME=VALUE, such as names=V_C,T_in",
+    "steady torque.kloss.breakdown_torque=40": "a motor is the torque of [steady] in a scene, by --machine",
     "optimize over.AB=0:1 absmax:a_C=3": "given as keep.absmax:a_C=LOW:HIGH, or minimize=absmax:a_C",
     "optimize over.ec=0:1 over=2": "over=2: over has a value already",
     "events -o values.txt": "-o values.txt: its name must end in .json, .csv",

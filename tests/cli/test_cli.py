@@ -31,7 +31,7 @@ COMMANDS = [
 
 
 @pytest.fixture
-def told(capsys):
+def message(capsys):
     """The output of a command line that succeeds."""
 
     def run(*words):
@@ -139,6 +139,9 @@ COMPLAINTS = {
     "evaluate T_in POINT m_rod=1 mu=0.1N": "a plain number, such as 0.1",
     "evaluate Y branch=2 theta=1 ec=0 AB=1 BC=3": "branch = 2: it is +1 or -1",
     "evaluate --exact": "unrecognized arguments: --exact",
+    "peak a_C POINT --unit mm": "unrecognized arguments: --unit; did you mean --units? (see desaxe peak",
+    "peak a_C POINT --mach SCENE": "unrecognized arguments: --mach; did you mean --machine?",
+    "run SCENE --over": "unrecognized arguments: --over",
     "frobnicate": "invalid choice: 'frobnicate'",
     "evaluat": "'evaluat' (did you mean evaluate? choose from",
     "run": "required: SCENE (see desaxe run --help)",
@@ -359,6 +362,8 @@ def test_doctor(capsys):
     out = capsys.readouterr().out
     assert f"place        {Path(dx.__file__).parent}\n" in out
     assert max(len(line) for line in out.splitlines() if "/" not in line) <= 100
+    assert "python-flint" in out
+    assert "flint" not in out.replace("python-flint", "")
     for word in ("numba", "llvmlite", "xarray", "threads", "freshness", "arrays"):
         assert f"\n  {word} " in out
     assert out.endswith("desaxe can be used.\n")

@@ -64,8 +64,9 @@ CALLS = {
     ),
 }
 SAME = {"point": "evaluate"}
-MISSING = re.compile(r"(\w+)\(\) missing \d+ required keyword-only arguments?: (.*)")
+MISSING = re.compile(r"(\w+)\(\) missing \d+ required (?:keyword-only|positional) arguments?: (.*)")
 OF_MEASURES = {"solve": "where.{}=VALUE", "optimize": "keep.{0}=LOW:HIGH, or minimize={0}, maximize={0}"}
+OVER = {"fit": "over=AB,BC"}  # where the bounds of an input may be left out
 PLUS_MINUS = "dx.plus_minus(value, tolerance)"
 SCENE = ", the torque also by [steady] of a scene"
 
@@ -114,6 +115,9 @@ def _call(options: argparse.Namespace) -> int:
     pair = next((name for name in arguments if ":" in name), None)
     if pair is not None and call in OF_MEASURES:
         raise UsageError(f"{pair}: a measure is given as {OF_MEASURES[call].format(pair)}")
+    if isinstance(arguments.get("torque"), dict):
+        key = next(iter(arguments["torque"]))
+        raise UsageError(f"torque.{key}: a motor is the torque of [steady] in a scene, by --machine")
     quantities = _quantities(call, names)
     machine, arguments = _machine(call, options, arguments)
     try:
@@ -176,7 +180,7 @@ def _as_words(message: str) -> str:
     missing = MISSING.match(message)
     if missing:
         names = missing[2].replace("'", "")
-        word = "over.AB=LOW:HIGH" if names == "over" else "NAME=VALUE"
+        word = OVER.get(missing[1], "over.AB=LOW:HIGH") if names == "over" else "NAME=VALUE"
         scene = SCENE if "torque" in names else ""
         return f"desaxe {missing[1]}: missing {names}; each is given as {word}{scene}"
     message = message.replace(PLUS_MINUS, '"NAME=VALUE +- TOLERANCE"')
@@ -215,10 +219,12 @@ def _machine(call: str, options: argparse.Namespace, arguments: dict[str, Any]) 
 
 def _quantities(call: str, names: list[str]) -> list[Any]:
     """The positional arguments of a call: its names, its one name, its file, or none."""
-    first = next(iter(signature(_function(call)).parameters.values()))
+    parameters = signature(_function(call)).parameters
+    first = next(iter(parameters.values()))
     if first.kind is not Parameter.POSITIONAL_OR_KEYWORD:
         if names:
-            raise UsageError(f"{names[0]}: desaxe {call} takes no quantity, only NAME=VALUE")
+            such = f", such as names={','.join(names)}" if "names" in parameters else ""
+            raise UsageError(f"{names[0]}: desaxe {call} takes no quantity, only NAME=VALUE{such}")
         return []
     what = "quantity" if first.name.startswith("name") else first.name
     if not names and first.default is Parameter.empty:

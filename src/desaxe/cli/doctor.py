@@ -18,6 +18,7 @@ from .parser import FLAG, Command, Option
 RUNTIME = ("numpy", "numba", "llvmlite")
 FEATURES = ("sse2", "sse4.2", "avx", "avx2", "fma", "avx512f", "neon", "sve")  # as LLVM calls them
 MISSING = "missing"
+MODULES = ("desaxe.derive", "flint")  # that the distributions of EXTRAS bring, under names of their own
 POINTS, CLOSE = 4096, 1e-13
 PRESS: dict[str, Any] = {"ec": 0.01, "AB": 0.04, "BC": 0.1, "omega0": 31.4}
 INPUTS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
@@ -52,7 +53,7 @@ def examine(accuracy: bool = False) -> Examination:
         "desaxe": {"version": _version("desaxe"), "place": str(Path(__file__).parents[1])},
         "runtime": {"python": f"{platform.python_version()} ({python})"}
         | {name: _version(name) for name in RUNTIME},
-        "optional": {name: _optional(name, extra) for name, extra in EXTRAS.items() if "." not in name},
+        "optional": {name: _optional(name, extra) for name, extra in EXTRAS.items() if name not in MODULES},
         "committed kernels": {"freshness": _committed()},
         "processor": _processor(),
         "computation": computed,

@@ -47,6 +47,18 @@ class Parser(argparse.ArgumentParser):
 
     more: Callable[[], str] | None = None
 
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(allow_abbrev=False, **settings)
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Refuse what is unknown here, where its command is known, and not in the parser above."""
+        result, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            hints = (did_you_mean(word, self._option_string_actions) for word in unknown if word[:2] == "--")
+            hint = next(filter(None, hints), "")
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{'; ' * bool(hint)}{hint.rstrip()}")
+        return result, unknown
+
     def format_help(self) -> str:
         """The help, with the text of a sub-command."""
         if self.more is not None:

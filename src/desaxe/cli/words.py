@@ -91,6 +91,9 @@ def _value(word: str, text: str) -> Any:
             )
         return values
     parts = text.split(":")
+    if len(parts) == 2 and "" in parts:
+        ends = ":".join(part or "none" for part in parts)
+        raise UsageError(f"{word}: an open side is none: {word.partition('=')[0]}={ends}")
     if len(parts) == 3:
         return _range(word, *parts)
     tolerance = _toleranced(text)
