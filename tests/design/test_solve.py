@@ -77,14 +77,17 @@ def test_a_peak_in_the_units_of_a_machine():
         ("stroke", 120, lambda machine: machine.events()["stroke"]),
         ("max_pressure_angle", 17, lambda machine: machine.events()["max_pressure_angle"]),
         ("margin", 90, lambda machine: 200 - 10 - machine["AB"] * 1e3),
+        ("V_outward", 1600, lambda machine: machine.events()["V_outward"]),
         (("absmax", "a_C"), 60_000, lambda machine: machine.peak("a_C")["value"]),
         (("at", "60 deg", "Y"), 220, lambda machine: machine.evaluate("Y", theta=60)),
     ],
 )
 def test_a_plain_value_is_in_the_units_of_the_machine(measure, value, back):
     press = dx.Machine(units="mm, deg, rpm", ec=10, AB=50, BC=200, omega0=300)
-    (crank,) = press.solve(over={"AB": (10, 100)}, where={measure: value})["AB"].tolist()
-    assert back(press.replace(AB=crank)) == pytest.approx(value, rel=1e-12)
+    requests = [{"where": {measure: value}}, *([{measure: value}] if isinstance(measure, str) else [])]
+    for request in requests:
+        (crank,) = press.solve(over={"AB": (10, 100)}, **request)["AB"].tolist()
+        assert back(press.replace(AB=crank)) == pytest.approx(value, rel=1e-12)
 
 
 def test_why_there_is_none():

@@ -9,8 +9,8 @@ from ..loads.load import Load
 from ..loads.resolve import settled
 from ..loads.units import function_in_si, slopes_in_si
 from ..mechanism import read
+from ..mechanism.catalogue import of_design
 from ..mechanism.inputs import INPUTS, OF_SHAFTS, OTHERS, Input
-from ..mechanism.names import WHOLE
 from ..mechanism.quantity_units import UnitSystem, si_unit
 from ..support.forks import IMPORTS
 from ..units.text import PLUS_MINUS, with_unit_of
@@ -18,14 +18,14 @@ from ..units.text import PLUS_MINUS, with_unit_of
 # Arguments that carry no unit of their own name: what they are about is said by their keys.
 EQUATION = "=="  # of a limit of `keep`
 BY_KEY = ("over", "keep", "where", "changes", "sigma")
-POSITIONS = {"Y", "s", "V_C", "a_C"}
+VALUES = {"Y", "s", "V_C", "a_C", "V_outward", "V_inward"}  # by which an answer is asked for
 
 
 def has_unit(name: str) -> bool:
     """True where an argument of this name, or of one slider of several, is a quantity with a unit."""
     if name.endswith("]"):
         name = name.partition("[")[0]
-    return name in INPUTS or name in OF_SHAFTS or name in OTHERS or name in POSITIONS or name in WHOLE
+    return name in INPUTS or name in OF_SHAFTS or name in OTHERS or name in VALUES or of_design(name)
 
 
 def in_si(system: UnitSystem, name: str, value: Any) -> Any:
