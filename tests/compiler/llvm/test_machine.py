@@ -115,6 +115,20 @@ def test_code_lives_as_long_as_its_owner():
     assert not machine._UNUSED
 
 
+OUTLIVES = """
+from desaxe.compiler.llvm import machine
+code = machine.compiled("define double @value() { ret double 1.0 }", "value")
+names = vars(machine)
+names.update(dict.fromkeys(name for name in names if name[:2] != "__"))  # as the exit leaves a module
+del code
+"""
+
+
+def test_code_that_outlives_its_module_is_silent():
+    done = subprocess.run([sys.executable, "-c", OUTLIVES], capture_output=True, text=True, check=True)
+    assert done.stderr == ""
+
+
 MEMORY = f"""
 import os, psutil
 from desaxe.compiler.llvm import machine

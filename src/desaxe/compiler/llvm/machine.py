@@ -61,6 +61,7 @@ def _llvmlite_lock() -> Any:
 
 
 LOCK = _Lock()
+_UNUSED: deque[Any] = deque()
 
 
 class Code:
@@ -69,14 +70,13 @@ class Code:
     __slots__ = ("__weakref__", "_tracker", "address")
 
     def __init__(self, tracker: Any, name: str) -> None:
-        self.address: int = tracker[name]
         self._tracker = tracker
+        self.address: int = tracker[name]
 
-    def __del__(self) -> None:
-        _UNUSED.append(self._tracker)  # a collection of garbage must not wait for LLVM
+    def __del__(self, unused: deque[Any] = _UNUSED) -> None:  # at exit the module's names are gone
+        unused.append(self._tracker)  # a collection of garbage must not wait for LLVM
 
 
-_UNUSED: deque[Any] = deque()
 _NUMBERS = count()
 
 
