@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe.simulation.panel import Record
 from tests.effort import cases
 from tests.motions import true_slopes
 from tests.simulation.test_loads import MACHINE
@@ -419,3 +420,14 @@ def test_what_has_no_derivative_is_refused_by_name(words):
     error = ValueError if words.startswith(("no parameter", "torque =", "F_Y = <load", "they")) else TypeError
     with pytest.raises(error, match=words):
         dx.simulate(**{"torque": 1.0, "t_end": 0.1, **PRESS, **WRONG[words]})
+
+
+def test_the_effort_of_derivatives_grows_with_the_panels_not_their_square(monkeypatch):
+    """Each knot of a table cuts a panel; the stretches between them are counted a few times in all."""
+    counted = []
+    stretches = Record.stretches.fget
+    monkeypatch.setattr(Record, "stretches", property(lambda self: counted.append(1) or stretches(self)))
+    angles = np.arange(120) * (2.0 * math.pi / 120)
+    force = dx.over_theta(angles.tolist(), (-300.0 - 200.0 * np.cos(angles)).tolist())
+    dx.simulate(torque=30.0, omega_start=20.0, t_end=0.3, wrt="AB", **{**LOADED, "F_Y": force})
+    assert len(counted) < 6

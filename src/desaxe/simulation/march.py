@@ -232,26 +232,33 @@ class March:
         return Record(heads, series, rates, ends, self.y)
 
     def law_of(self, k: int) -> Law:
-        """The law of the stretch of a panel, with the pieces that hold in the middle of its first panel."""
-        record = self.record
-        k = int(np.searchsorted(record.stretches, record.stretches[k]))
-        (start, h, stop), series = record.heads[k, [0, 1, 6]], record.series[k]
-        if record.ends[k, 0] == march.RESTING:
-            return Resting(self.model, self.model.drive)
-        middle = basis(np.array([(stop - start) / h - 1.0 if h > 0.0 else 0.0]), NODES)[:, 0]
-        q, v, _ = (record.y[k] + series @ middle).tolist()
-        direction, side, pressed = record.ends[k, 2:].tolist()
-        drive = self.model.drive.ahead(*state_of(self.model, q, v), direction)
-        return Law(self.model, drive, direction, side, pressed)
+        """The law of the stretch of a panel."""
+        stretches = self.record.stretches
+        return self._laws_from(np.searchsorted(stretches, stretches[k : k + 1]))[0]
+
+    def _laws_from(self, panels: NDArray[np.intp]) -> list[Law]:
+        """The laws of stretches from their first panels, with the pieces that hold in the middle of these."""
+        record, model = self.record, self.model
+        start, h, stop = record.heads[panels][:, [0, 1, 6]].T
+        middle = np.where(h > 0.0, (stop - start) / np.where(h > 0.0, h, 1.0) - 1.0, 0.0)
+        moved = np.einsum("kt,tik->it", basis(middle, NODES), record.series[panels])
+        theta, omega = state_of(model, *(record.y[panels].T + moved)[: V + 1])
+        rows = zip(theta.tolist(), omega.tolist(), record.ends[panels].tolist(), strict=True)
+        return [
+            Resting(model, model.drive)
+            if end[0] == march.RESTING
+            else Law(model, model.drive.ahead(angle, speed, end[2]), *end[2:])
+            for angle, speed, end in rows
+        ]
 
     @computed_once
     def panels(self) -> list[Panel]:
         """The panels of the motion, which has ended."""
         record = self.record
-        first = np.flatnonzero(np.diff(record.stretches, prepend=-1)).tolist()
-        laws = [self.law_of(k) for k in first]
+        stretches = record.stretches
+        laws = self._laws_from(np.flatnonzero(np.diff(stretches, prepend=-1)))
         columns = record.heads.tolist(), record.y, record.series, record.rates
-        rows = zip(record.stretches.tolist(), *columns, strict=True)
+        rows = zip(stretches.tolist(), *columns, strict=True)
         return [
             Panel(laws[n], head[0], head[1], y, series, head[6], rates) for n, head, y, series, rates in rows
         ]

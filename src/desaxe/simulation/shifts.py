@@ -33,10 +33,10 @@ class Shifts:
         self.model, self.duration, self.tangents, self.wrt = run.model, run.t, tangents, tangents.wrt
         self.notes: list[str] = []
         self.of_centres: dict[str, Array] = {}
-        ends = np.array([*(panel.y for panel in run.panels), run.y]).T
+        ends = np.vstack([run.record.y, run.record.last]).T
         theta, omega = state_of(self.model, *ends[: V + 1])
         self.fastest = float(np.nanmax(np.abs(omega)))
-        starts = [panel.start for panel in run.panels]
+        starts = run.record.heads[:, 0].tolist()
         self.states = dict(zip(starts, zip(theta.tolist(), omega.tolist(), strict=True), strict=False))
 
     # ---- jumps ------------------------------------------------------------------------------
