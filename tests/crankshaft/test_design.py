@@ -201,7 +201,8 @@ def test_a_crankshaft_from_a_scene_file(tmp_path):
     )
     for text, message in (
         (SCENE.partition("[crankshaft]")[0], r"no table \[crankshaft\]"),
-        (SCENE.replace("phase =", "phases ="), "no input 'phases'; did you mean phase"),
+        (SCENE.replace("phase =", "phases ="), "crankshaft.phases: unknown key; did you mean phase"),
+        (SCENE.replace('"30 deg"', "[0, 90]"), r"bank: .* each of 3 sliders, got \(0, 90\) deg"),
         (SCENE.replace("phase = [0, 120, 240]", ""), "phase is missing"),
     ):
         file.write_text(text, encoding="utf-8")
@@ -240,7 +241,11 @@ def test_calls_of_a_crankshaft_on_the_command_line(tmp_path, capsys):
     assert "sliders" not in capsys.readouterr().out
 
 
-def test_a_scene_file_of_a_crankshaft_runs(tmp_path, capsys):
+def closed(*texts):
+    raise OSError("nobody reads the output")
+
+
+def test_a_scene_file_of_a_crankshaft_runs(tmp_path, capsys, monkeypatch):
     """Its outputs over the angles of the file: the sum of what each slider gives by itself."""
     file, data = tmp_path / "three.toml", tmp_path / "three.csv"
     scene = SCENE.replace("[motion]", "[motion]\ntheta = [0, 45, 200]")
@@ -258,6 +263,10 @@ def test_a_scene_file_of_a_crankshaft_runs(tmp_path, capsys):
             for k, m in enumerate(three.members)
         ]
         assert float(torque) == pytest.approx(sum(one), rel=1e-9, abs=1e-9)
+    file.write_text(f'title = "Three in a row"\n{scene}', encoding="utf-8")
+    monkeypatch.setattr("desaxe.cli.files.print", closed, raising=False)
+    assert main(["run", str(file), "--report", str(tmp_path / "row.md")]) == 2
+    assert (tmp_path / "row.md").read_text(encoding="utf-8").startswith("# Three in a row")
     file.write_text(f'{scene}[[peak]]\nquantity = "T_in"\n', encoding="utf-8")
     assert main(["run", str(file)]) == 2
     assert "peak: of one slider" in capsys.readouterr().err

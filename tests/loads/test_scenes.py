@@ -173,7 +173,7 @@ def test_what_no_module_can_hold_is_refused(tmp_path):
         dx.compile(scene, tmp_path / "press.py")
     with pytest.raises(SceneError, match=r"loads.F_Y = .* holds tables over theta"):
         dx.compile(scene, tmp_path / "press", to="c")
-    with pytest.raises(TypeError, match="a page holds numbers and tables, no functions"):
+    with pytest.raises(TypeError, match="a page holds numbers and tables over theta, Y or a stroke"):
         dx.explore(scene, tmp_path / "press.html")
 
 
@@ -236,3 +236,8 @@ def test_angles_of_a_table_are_in_the_units_of_the_scene(tmp_path):
         "loads": {"F_Y": {"over_theta": [[0, 0], [90, -500], [180, 0]], "kind": "linear", "period": 360}},
     }  # fmt: skip
     assert dx.scene(scene).inputs["F_Y"] == machine["F_Y"]
+    (tmp_path / "gas.csv").write_text("theta [deg];F_Y [kN]\n0;0\n90;-0.5\n180;0\n", "utf-8")
+    of_file = {"over_theta": str(tmp_path / "gas.csv"), "kind": "linear", "period": 360}
+    for units, more in (("mm, deg", {}), ("mm, rad", {"theta": "deg"})):
+        read = dx.scene({**scene, "units": units, "loads": {"F_Y": {**of_file, **more}}}).inputs["F_Y"]
+        assert read.table == machine["F_Y"].table

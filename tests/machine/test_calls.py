@@ -133,7 +133,17 @@ def test_loads_are_written_and_read(load, units, tmp_path):
 
 def test_a_function_is_no_data(tmp_path):
     press = PRESS.replace(F_Y=lambda theta: 2.0 * math.sin(theta))
-    with pytest.raises(TypeError, match="F_Y: a function is not data"):
+    with pytest.raises(TypeError, match="F_Y: <load over theta: the function <lambda>> is not data"):
         press.to_scene(tmp_path / "press.toml")
     assert not list(tmp_path.iterdir())
     assert float(press.scene("T_in", theta=1.0).run().dataset.T_in) == press.evaluate("T_in", theta=1.0)
+
+
+def test_the_machine_of_a_scene_is_read_without_its_requests(tmp_path):
+    """A picture of a list of designs does not know which; a call on one of them does not ask."""
+    path = PRESS.to_scene(tmp_path / "press.toml", "T_in", ec=[0.0, 0.01])
+    with path.open("a", encoding="utf-8") as scene:
+        scene.write('[[picture]]\nfile = "a.png"\nquantity = "Y"\n[[check]]\nprinted = { stroke = 1.0 }\n')
+    with pytest.raises(ValueError, match=r"give at\.ec"):
+        dx.scene(path)
+    assert dx.Machine.read(path).replace(ec=0.01).drive() == PRESS.replace(ec=0.01).drive()

@@ -69,6 +69,10 @@ def test_a_picture_is_its_artists():
         PRESS.plot.polar(60)
 
 
+def push(Y):
+    return -3.0 * Y
+
+
 def test_titles_tell_what_matters():
     forces = title(LOADED.plot("T_in"))
     for words in ("ec = 10 mm", "omega0 = 300 rpm", "m_slider = 4 kg"):
@@ -76,6 +80,11 @@ def test_titles_tell_what_matters():
     assert "F_Y over theta, -3000 to 0 N" in forces
     assert "F_Y" not in title(LOADED.plot("a_C"))
     assert "m_slider" not in title(LOADED.plot("a_C"))
+    both = dx.Machine(PRESS, F_Y=dx.spring("4 N/mm", free="0.12 m") + dx.damper("200 N s/m") + 5)
+    words = "F_Y spring: stiffness = 4 N/mm, free = 120 mm + damper: linear = 0.2 N s/mm, quadratic = 0"
+    for picture in (both.plot("T_in"), both.plot.drive()):
+        assert f"{words} N s^2/mm^2 + 5 N" in title(picture).replace("\n", " ").replace("$^{2}$", "^2")
+    assert title(PRESS.replace(F_Y=push).plot("T_in")).endswith("F_Y over Y: the function push")
     constant = dx.Machine(PRESS, F_Y="-2 kN", mu=0, branch=-1)
     assert "F_Y = -2000 N" in title(constant.plot("T_in"))
     assert "branch = -1" in title(constant.plot("Y"))

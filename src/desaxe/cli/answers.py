@@ -32,6 +32,8 @@ def written(answer: Any, options: argparse.Namespace, columns: Mapping[str, Any]
 
     columns  the inputs of several designs with their units, which stand beside the answer in a table
     """
+    if options.file is not None:  # before the text, whose reader may be gone
+        _write(answer, Path(options.file), options.overwrite, columns)
     if options.json:
         print(json_text(answer))
     elif options.csv:
@@ -42,7 +44,6 @@ def written(answer: Any, options: argparse.Namespace, columns: Mapping[str, Any]
         plain_dict = type(answer) is dict
         print(answer.report() if hasattr(answer, "report") else Answer(answer) if plain_dict else answer)
     if options.file is not None:
-        _write(answer, Path(options.file), options.overwrite, columns)
         print(f"{printable(options.file)}: written")
 
 

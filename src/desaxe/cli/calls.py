@@ -244,11 +244,11 @@ def _motor(call: str, path: str, arguments: Mapping[str, Any], several: bool) ->
     """
     from ..machine.crankshaft import content_of_shaft
     from ..scenes.parts.motor import ROWS
-    from ..scenes.scene import scene
+    from ..scenes.scene import content_of_machine
 
     if call not in ("steady", "simulate"):
         return {}
-    steady = (content_of_shaft(path)[0] if several else scene(path).content).steady
+    steady = (content_of_shaft(path)[0] if several else content_of_machine(path)).steady
     if steady is None:
         return {}
     if call == "simulate" or any(name in arguments for name in ROWS):

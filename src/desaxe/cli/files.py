@@ -42,10 +42,12 @@ def _run_shaft(options: argparse.Namespace, tolerances: Mapping[str, str]) -> in
 
     shaft, data = Crankshaft.read(options.scene), read_toml(Path(options.scene))
     theta = content_of_shaft(options.scene)[0].inputs.get("theta", 0.0)
-    print(run_text(shaft, data, theta, options.overwrite))
-    if options.report is not None:
-        shaft.report(options.report, data.get("outputs"), tolerances=tolerances, overwrite=options.overwrite)
-        print(f"\nReport\n  {printable(options.report)}")
+    text = run_text(shaft, data, theta, options.overwrite)
+    if options.report is not None:  # before the text, whose reader may be gone
+        more = {"tolerances": tolerances, "title": data.get("title", ""), "overwrite": options.overwrite}
+        shaft.report(options.report, data.get("outputs"), **more)
+        text += f"\n\nReport\n  {printable(options.report)}"
+    print(text)
     return 0
 
 

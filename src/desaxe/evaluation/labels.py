@@ -187,4 +187,4 @@ def known_loads(dataset: "xr.Dataset") -> Mapping[str, Any]:
 
 def loads_text(loads: Mapping[str, Any], units: UnitSystem = SI) -> str:
     """The loads that vary with the motion, as text for an attribute."""
-    return "; ".join(f"{name}: {load.told(units.of(name))}" for name, load in loads.items())
+    return "; ".join(f"{name}: {load.in_units(units).told(units.of(name))}" for name, load in loads.items())

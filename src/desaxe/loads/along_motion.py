@@ -8,7 +8,9 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from ..mechanism.quantity_units import SI, UnitSystem
 from ..support.computed import computed_once
+from ..support.shown import with_unit
 from .function import called, name_of
 from .load import Load, Partials, sign_of
 from .table import Table
@@ -248,7 +250,15 @@ class SumOfLoads(OfMotion):
     def told(self, conversion: Any = None) -> str:
         """All members in a line."""
         parts = [("" if f == 1.0 else f"{f:g} ") + load.told(conversion)[1:-1] for f, load in self.terms]
-        return f"<{' + '.join([*parts, *([f'{self.constant:g}'] if self.constant else [])])}>"
+        own = conversion or self.values_in(SI)
+        constant = [with_unit(f"{own.shown(self.constant):g}", own.unit)] if self.constant else []
+        return f"<{' + '.join([*parts, *constant])}>"
+
+    def in_units(self, units: UnitSystem) -> Load:
+        """The sum, and all members, as they are shown in these units."""
+        return super(
+            SumOfLoads, replace(self, terms=tuple((f, one.in_units(units)) for f, one in self.terms))
+        ).in_units(units)
 
 
 def members_of(loads: Iterable[Load]) -> list[Load]:

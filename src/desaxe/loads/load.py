@@ -8,6 +8,7 @@ import sys
 from abc import ABC, abstractmethod
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Mapping
+from copy import copy
 from dataclasses import dataclass, field, fields
 from hashlib import sha256
 from math import ceil, floor, nan
@@ -185,6 +186,12 @@ class Load(ABC):
     def place(self) -> str:
         """The column that the load is over, in words."""
         return self.over
+
+    def in_units(self, units: "UnitSystem") -> "Load":
+        """The load as it is called and shown in these units."""
+        new = copy(self)
+        object.__setattr__(new, "shown_in", units)
+        return new
 
     def told(self, conversion: "Conversion | None" = None) -> str:
         """The load in a line; with a conversion in that unit."""

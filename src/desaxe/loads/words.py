@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from ..mechanism.quantity_units import UnitSystem
 from ..support.shown import with_unit
 from .table import Table
 
@@ -24,10 +25,11 @@ def _range(way: Table, unit: str, conversion: Any) -> str:
     return with_unit(curve, unit) + (f" (points {points})" if points != curve else "")
 
 
-def brief(load: Any, conversion: Any) -> str:
-    """A load in a few words, with the range of both ways together."""
+def brief(load: Any, name: str, units: UnitSystem) -> str:
+    """The load of an input in a few words, with the range of both ways together."""
+    conversion = units.of(name)
     if not load.tables:
-        words: str = load.told()
+        words: str = load.in_units(units).told(conversion)
         return words[1:-1].removeprefix("load ")
     ends = [conversion.shown(end) for table in load.tables for end in table.range]
     return f"over {load.over}, " + with_unit(span(ends), conversion.unit)

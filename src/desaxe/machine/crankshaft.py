@@ -11,13 +11,13 @@ from ..crankshaft.sliders import Sliders
 from ..crankshaft.sums import GRAVITY, STATE, ShaftSlider
 from ..mechanism.closed import TURN
 from ..mechanism.inputs import Input, row_of
-from ..mechanism.keywords import check_inputs
-from ..mechanism.messages import errors_in, listed, named
+from ..mechanism.messages import amount, errors_in, listed, named
 from ..mechanism.quantity_units import UnitSystem
 from ..mechanism.read import read, read_array
 from ..mechanism.slips import warn_of_slips
 from ..runtime.request import MachineSpeed
 from ..scenes.content import Content
+from ..scenes.schema import SceneError, hint
 from ..support.files import as_path
 from ..support.forks import IMPORTS
 from ..support.shown import with_unit
@@ -166,15 +166,16 @@ class Crankshaft(Machine):
     ) -> Any:
         """Write a page to hand on, .html or .md: sliders, drive, peaks of outputs, balance; its path.
 
-        Inputs of `more` replace those of the crankshaft; tolerances are those of `tolerance` alone. Needs the
-        extras `labelled` and `plot`.
+        Inputs of `more` replace those of the crankshaft; `title` is that of the page, tolerances are those of
+        `tolerance` alone. Needs the extras `labelled` and `plot`.
         """
         if tolerances:
             raise TypeError("report: of a crankshaft without tolerances; see crankshaft.tolerance(...)")
         with IMPORTS:
             from .crankshaft_report import write_report
 
-        return write_report(self.replace(**more), path, outputs, fluctuation, overwrite)
+        title = more.pop("title", "")
+        return write_report(self.replace(**more), path, outputs, fluctuation, overwrite, title)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (self._inputs, self.units)
@@ -212,7 +213,9 @@ def content_of_shaft(path: str | PathLike[str]) -> tuple[Content, dict[str, Any]
     table = data.pop("crankshaft", None)
     if not isinstance(table, dict):
         raise ValueError(f"{file}: there is no table [crankshaft]; Machine.read reads one slider")
-    check_inputs("[crankshaft]", table, ANGLES)
+    wrong = next((key for key in table if key not in ANGLES), None)
+    if wrong is not None:
+        raise SceneError(f"{file}: crankshaft.{wrong}: unknown key; {hint(wrong, ANGLES)}")
     if "phase" not in table:
         raise TypeError(f"{file}: phase is missing in [crankshaft]")
     design = {key: value for key, value in data.items() if key not in RESULTS}
@@ -232,9 +235,8 @@ def _array(name: str, value: Any, system: UnitSystem) -> Any:
 def _row(name: str, array: Any, count: int) -> Any:
     """A number for each slider; one number is that of all."""
     if array.ndim > 1 or array.size not in (1, count) or not np.isfinite(array).all():
-        raise ValueError(
-            f"{name}: expected a finite number for each of {count} sliders, got {array.tolist()}"
-        )
+        requested = amount(name, tuple(array.ravel()), "g", says_unit=True)
+        raise ValueError(f"{name}: expected a finite number for each of {count} sliders, got " + requested)
     return np.broadcast_to(array, (count,)).copy()
 
 

@@ -23,7 +23,12 @@ OF_ONE = ("reduce", "check", "peak", "picture")  # keys of a scene of one slider
 
 
 def write_report(
-    shaft: Any, path: str | PathLike[str], outputs: Sequence[str] | None, fluctuation: float, overwrite: bool
+    shaft: Any,
+    path: str | PathLike[str],
+    outputs: Sequence[str] | None,
+    fluctuation: float,
+    overwrite: bool,
+    title: str = "",
 ) -> Path:
     """Compute and write the page of a crankshaft; its path."""
     file = as_path("path", path)
@@ -31,7 +36,7 @@ def write_report(
     names = OUTPUTS if outputs is None else (outputs,) if isinstance(outputs, str) else tuple(outputs)
     origin = Section("Origin", [Lines(source())])
     return write_document(
-        Document(_title(shaft), [*_sections(shaft, names, fluctuation), origin]), file, overwrite
+        Document(title or _title(shaft), [*_sections(shaft, names, fluctuation), origin]), file, overwrite
     )
 
 

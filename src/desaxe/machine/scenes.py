@@ -20,7 +20,7 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.own import Definition
 from ..mechanism.quantity_units import UnitSystem
 from ..scenes.content import Content
-from ..scenes.scene import scene
+from ..scenes.scene import content_of_machine, scene
 from ..scenes.schema import SECTIONS, SceneError
 from ..support.version import version
 from ..support.written import UNSEALED, require_path, sealed, write_whole
@@ -51,7 +51,7 @@ def inputs_of_scene(
     source: str | PathLike[str] | Mapping[str, Any],
 ) -> tuple[dict[str, Any], UnitSystem, tuple[Definition, ...]]:
     """The inputs of a scene in SI units, without crank angles, its units and its own quantities."""
-    return inputs_of_content(scene(source).content)
+    return inputs_of_content(content_of_machine(source))
 
 
 def inputs_of_content(content: Content) -> tuple[dict[str, Any], UnitSystem, tuple[Definition, ...]]:
@@ -158,8 +158,7 @@ def load_table(
         rows = zip(ELEMENTS[type(load)].items(), load.numbers.values(), strict=True)
         return {key: f"{value!r} {row.unit}" for (key, row), value in rows}
     if type(load) not in PLACES:
-        what = repr(load) if load.tables else "a function"
-        raise TypeError(f"{name}: {what} is not data, and cannot stand in a scene file; give a table")
+        raise TypeError(f"{name}: {load!r} is not data, and cannot stand in a scene file; give a table")
     over, key, place, si = PLACES[type(load)]
     period = [load.period] if isinstance(load, TableOverTheta) else []
     (places, own_period), along = _in_unit([load.tables[0].knots, period], units.of(place), si)

@@ -33,8 +33,7 @@ def rows_of(machine: Any) -> list[tuple[str, str, str]]:
 def _input(units: UnitSystem, name: str, value: Any) -> str:
     if name == "branch":
         return _value(value, "")
-    conversion = units.of(name)
-    return brief(value, conversion) if isinstance(value, Load) else _value(value, conversion.unit)
+    return brief(value, name, units) if isinstance(value, Load) else _value(value, units.of(name).unit)
 
 
 def _value(value: Any, unit: str) -> str:

@@ -24,8 +24,9 @@ MOST_IN_LEGEND = 10  # curves; more get a colour bar
 LABEL, TITLE = 58, 80  # letters in a line
 MINUTE = 30.0 / pi  # rpm in a rad/s
 ACTING = ("alpha", *(name for name in LOADS if name not in CENTRES))  # nothing where they are 0
-_LOADS = re.compile(r"(\w+): <load (.*?)>(?=; \w+: <|$)")
-_POINTS = re.compile(r": [0-9]+ points, \w+(?=,)| \(points .*?\)")  # left out of a title
+_LOADS = re.compile(r"(\w+): <(.*?)>(?=; \w+: <|$)")
+_POINTS = re.compile(r"\bload (?=over)|: [0-9]+ points, \w+(?=,)| \(points .*?\)")  # left out of a title
+_RANGE = re.compile(r" to [^ ]+$")  # without its unit
 
 
 def figure_type(name: str) -> Any:
@@ -139,8 +140,8 @@ def title_of(dataset: "xr.Dataset", names: Sequence[str], width: int = TITLE) ->
     words = [*_numbers(dataset, needs)]
     for name, text in loads:
         if name in needs:
-            brief = f"{name} {_POINTS.sub('', text)}"
-            words.append(brief if brief[-1].isalpha() else f"{brief} {INPUTS[name].unit}")
+            brief = f"{name} {raised(_POINTS.sub('', text))[1:-1]}"
+            words.append(f"{brief} {INPUTS[name].unit}" if _RANGE.search(brief) else brief)
     if dataset.attrs.get("branch") == -1:
         words.append("branch = -1")
     return filled(words, width)

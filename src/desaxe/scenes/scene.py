@@ -138,10 +138,19 @@ def scene(source: str | PathLike[str] | Mapping[str, Any]) -> Scene:
 
     See docs/choose.md: which call for which question.
     """
+    return _scene(source)
+
+
+def content_of_machine(source: str | PathLike[str] | Mapping[str, Any]) -> Content:
+    """The machine and the motor of a scene, whose peaks, checks and pictures may not suit it."""
+    return _scene(source, alone=True).content
+
+
+def _scene(source: str | PathLike[str] | Mapping[str, Any], alone: bool = False) -> Scene:
     name = printable(source) if isinstance(source, (str, PathLike)) else ""
     try:
         data = plain_data(source)
-        content = read(data, None if isinstance(source, Mapping) else Path(source).parent)
+        content = read(data, None if isinstance(source, Mapping) else Path(source).parent, alone=alone)
         return Scene(content, name, content.units or units_written(data))
     except SceneError as error:
         raise SceneError(f"{name or 'scene'}: {error}") from None

@@ -46,6 +46,8 @@ def test_the_series_of_textbooks():
     assert result["cos"][2] == pytest.approx(-10.0 * (k + k**3 / 4 + 15 * k**5 / 128), rel=1e-8)
     assert result["cos"][4] == pytest.approx(10.0 * (k**3 / 4 + 3 * k**5 / 16), rel=1e-4)
     assert np.abs(result["sin"]).max() < 10 * result["error"]
+    rows = [line.split() for line in repr(result).splitlines()]
+    assert [row[1] for row in rows[2:11]] == [f"{cosine:.6g}" for cosine in result["cos"]]
 
 
 def test_next_to_the_change_point_the_stated_error_holds():

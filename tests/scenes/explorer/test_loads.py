@@ -104,5 +104,7 @@ def test_a_peak_at_a_jump_is_its_one_sided_limit(kind, name, numbers_of, folder)
 
 
 def test_a_function_is_refused(folder):
-    with pytest.raises(TypeError, match=r"explore: F_Y = .* a page holds numbers and tables, no functions"):
+    with pytest.raises(
+        TypeError, match=r"explore: F_Y = .* a page holds numbers and tables over theta, Y or a stroke"
+    ):
         dx.explore(path=folder / "none.html", F_Y=lambda theta: 2.0 * np.sin(theta), **PRESS)

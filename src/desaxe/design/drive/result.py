@@ -79,7 +79,7 @@ class Drive(Answer):
                 continue
             conversion = self._system.of(name)
             if isinstance(value, Load):
-                message.append(f"{name} {brief(value, conversion)}")
+                message.append(f"{name} {brief(value, name, self._system)}")
                 continue
             message.append(with_unit(f"{name} = {conversion.shown(value):.6g}", conversion.unit))
         return message

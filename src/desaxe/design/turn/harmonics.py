@@ -7,14 +7,32 @@ import numpy as np
 from ...mechanism.catalogue import quantity
 from ...mechanism.keywords import with_known_keywords
 from ...mechanism.quantity_units import unit_of
-from ...support.answer import Answer
+from ...support.answer import Answer, lines_of, text_of
 from ...support.checks import whole_number
 from ...support.panels import NODES, RESOLVED, WEIGHT, WIDEST, Array, Panels
+from ...support.shown import printed
+from ...support.text_table import table
 from .turn import turning
 
 WAVES = 4.0  # rad of the highest wave in a panel of 16 nodes: what Gauss's rule integrates to rounding
 MOST = 2048  # orders
+ROWS = 65  # of the table that is shown
 BLOCK = 64  # panels whose waves are in memory at a time
+
+
+class Harmonics(Answer):
+    """The harmonics of `harmonics`; their repr is a table with a row for each order."""
+
+    def __repr__(self) -> str:
+        columns = ("order", "cos", "sin", "amplitude", "phase")
+        shown = [k for k in range(len(self["order"])) if k < ROWS]
+        rows = [tuple(text_of(self[name][k]) for name in columns) for k in shown]
+        units = tuple(printed(str(self.units.get(name, ""))) for name in columns)
+        lines = table([columns, *([units] if any(units) else []), *rows], "r" * len(columns))
+        if len(shown) < len(self["order"]):
+            lines.append(f"... {len(self['order'])} orders")
+        rest = {name: value for name, value in self.items() if name not in columns}
+        return "\n".join([*lines, *lines_of(rest, self.units)])
 
 
 @with_known_keywords
@@ -72,7 +90,7 @@ def harmonics(
         "points": panels.values[name].size,
     }
     own = dict.fromkeys(("cos", "sin", "amplitude", "mean", "remainder", "error"), unit_of(name))
-    return Answer(series, {**own, "phase": unit_of("phase")})
+    return Harmonics(series, {**own, "phase": unit_of("phase")})
 
 
 def _series(panels: Panels, value: Array, turns: int, count: int) -> tuple[Array, float]:

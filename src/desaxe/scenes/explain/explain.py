@@ -141,7 +141,9 @@ def _input(name: str, value: Value, units: UnitSystem) -> dict[str, Any]:
     row: dict[str, Any] = {"name": name, "unit": own.unit}
     if isinstance(value, tuple):
         return {**row, "values": len(value), "from": own.shown(value[0]), "to": own.shown(value[-1])}
-    return row | ({"load": brief(value, own)} if isinstance(value, Load) else {"value": own.shown(value)})
+    return row | (
+        {"load": brief(value, name, units)} if isinstance(value, Load) else {"value": own.shown(value)}
+    )
 
 
 def _grid(content: Content, plan: Plan) -> dict[str, Any]:

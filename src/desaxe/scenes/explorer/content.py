@@ -109,7 +109,9 @@ def _tables(inputs: Mapping[str, Any]) -> dict[str, TableOverTheta | OverY]:
     result = {}
     for name, load in split(inputs)[1].items():
         if not isinstance(load, (TableOverTheta, OverY)):
-            raise TypeError(f"explore: {name} = {load!r}: a page holds numbers and tables, no functions")
+            raise TypeError(
+                f"explore: {name} = {load!r}: a page holds numbers and tables over theta, Y or a stroke"
+            )
         result[name] = load
     return result
 

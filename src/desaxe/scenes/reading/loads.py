@@ -83,7 +83,7 @@ def force_of(key: str, name: str, written: Any, folder: Path | None, units: Unit
         raise SceneError(f"{key}.{option} is missing: {meaning}")
     load = _made(key, kind, KINDS[kind], written, folder, units)
     plain = plain_units(name, load, units) if isinstance(written[kind], str) else {}
-    if plain and "period" not in written:
+    if plain:
         force = plain.pop("value", "") or plain.pop("pressure", "")
         named = zip(KINDS[kind].units, (next(iter(plain.values()), ""), force), strict=True)
         beside = ", ".join(f'{unit_key} = "{unit}"' for unit_key, unit in named if unit)
@@ -161,6 +161,9 @@ def _from_file(
     for row in PISTON:  # plain numbers of the scene, where those of the file are in SI units
         if isinstance(options.get(row.name), (int, float)):
             options[row.name] = in_si(row, options[row.name], units)
+    if "period" in options:  # in the unit of its angles, as beside points
+        unit = options.get("theta") or units.of("theta").unit
+        (options["period"],) = _with_unit([options["period"]], unit)
     beside = None if folder is None else folder / name
     return kind.maker.read(beside if beside is not None and beside.exists() else Path(name), **options)
 

@@ -66,10 +66,11 @@ def _refusing(prefix: str = "", shortened: Callable[[str], str] = str) -> Iterat
         raise SceneError(prefix + shortened(str(error))) from None
 
 
-def read(data: Mapping[str, Any], folder: Path | None = None) -> Content:
+def read(data: Mapping[str, Any], folder: Path | None = None, *, alone: bool = False) -> Content:
     """The content of a scene; SceneError names the first key that is wrong.
 
     folder   where the scene file is, and perhaps the files of its loads
+    alone    the machine and its motor, without the peaks, checks and pictures that are requested
     """
     with _refusing():
         units = UnitSystem.read(data.get("units"))
@@ -78,11 +79,15 @@ def read(data: Mapping[str, Any], folder: Path | None = None) -> Content:
         own = read_definitions(data.get("quantities", {}))
         redefine(own)
     with using(own):
-        return _content(data, folder, units, own)
+        return _content(data, folder, units, own, () if alone else ("check", "peak", "picture"))
 
 
 def _content(
-    data: Mapping[str, Any], folder: Path | None, units: UnitSystem, own: tuple[Definition, ...]
+    data: Mapping[str, Any],
+    folder: Path | None,
+    units: UnitSystem,
+    own: tuple[Definition, ...],
+    requests: tuple[str, ...],
 ) -> Content:
     inputs = _inputs(data, folder, units)
     warn_of_slips(written_inputs(data), units, 5, inputs)
@@ -103,7 +108,7 @@ def _content(
 
     def each(key: str, one_of: Any) -> list[Any]:
         """The requests of the tables of a list."""
-        numbered = enumerate(data.get(key, ()), 1)
+        numbered = enumerate(data.get(key, ()) if key in requests else (), 1)
         return [one_of(f"{key} #{number}", table, inputs, units) for number, table in numbered]
 
     checks, peaks, pictures = each("check", checks_of), each("peak", peak_of), each("picture", picture_of)
