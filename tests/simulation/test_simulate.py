@@ -393,6 +393,19 @@ def test_a_jam_on_the_way_is_told_at_once():
     assert "two sets of forces balance" in result["message"]
 
 
+@pytest.mark.parametrize("torque", [-0.7, -0.5, 0.0, 3.0])
+def test_a_steep_rod_rests_only_where_statics_lets_it(torque):
+    """The torque alone loads the rod; friction has to balance the rest of F_Y by mu |N|, here mu tan > 1."""
+    design = {"AB": 0.04, "BC": 0.101, "ec": 0.06, "mu": 2.0, "F_Y": -50.0, "m_slider": 1.0, "I_crank": 0.01}
+    result = dx.simulate(torque=torque, t_end=0.05, **design)
+    across = 0.06 / math.sqrt(0.101**2 - 0.06**2)  # the crank is level: Y' = -AB across
+    along = -torque / (0.04 * across)  # what the rod exerts on the slider
+    assert (result["status"] == 1) == (abs(along - 50.0) <= 2.0 * abs(along * across))
+    several = dx.simulate(torque=[torque, torque], t_end=0.05, **design)
+    assert several["status"].tolist() == [result["status"]] * 2
+    assert result["status"] == 1 or "two sets of forces balance" in result["message"]
+
+
 def test_an_angle_that_is_a_dead_centre_is_both():
     result = dx.simulate(torque=0.25, t_end=3.0, until=math.pi - math.asin(0.06 / 0.17), **PRESS)
     assert kinds(result) == ["dead centre", "angle"]

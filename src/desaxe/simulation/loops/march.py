@@ -224,6 +224,13 @@ def choose(y: Any, clock: Any, knots: Any, sheets: Any, law: Any, data: Any, row
             break
         elif law[RUBS] > 0.0 and solutions == 1 and way * alpha > 0.0:
             starts, chosen, side = starts + 1, way, pressed
+        elif law[RUBS] > 0.0 and solutions == 2:
+            law[PRESSED] = -pressed
+            code = motion(t, y, law, data, rows, still)
+            if code != 0:
+                return code
+            if way * alpha > 0.0 or way * acceleration(rows) > 0.0:
+                return TWO_BALANCES  # at rest nothing says on which side the guide presses
     if starts != 1:
         return RESTS if starts == 0 else TWO_BALANCES
     if chosen != way:
