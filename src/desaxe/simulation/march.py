@@ -257,11 +257,8 @@ class March:
         record = self.record
         stretches = record.stretches
         laws = self._laws_from(np.flatnonzero(np.diff(stretches, prepend=-1)))
-        columns = record.heads.tolist(), record.y, record.series, record.rates
-        rows = zip(stretches.tolist(), *columns, strict=True)
-        return [
-            Panel(laws[n], head[0], head[1], y, series, head[6], rates) for n, head, y, series, rates in rows
-        ]
+        rows = zip(stretches.tolist(), record.heads.tolist(), strict=True)
+        return [Panel(laws[n], start, stop, (q, v, work)) for n, (start, _, _, q, v, work, stop) in rows]
 
     @property
     def law_at_end(self) -> Law:

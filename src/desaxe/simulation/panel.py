@@ -48,15 +48,12 @@ def _basis_at(x: float, degree: int) -> list[float]:
 
 
 class Panel(NamedTuple):
-    """A solved panel: its law, start and length, the series of q, v and W behind the start, the end."""
+    """A solved panel of a motion: its law, start and end, and q, v and W at the start."""
 
     law: Law
     start: float
-    h: float
-    y: Array  # q, v, W at the start
-    series: Array  # 3, NODES + 1: of what is added to them
     stop: float
-    rates: Array  # of q, v and W at the nodes, and others (see `loops.march`)
+    y: tuple[float, ...]
 
 
 class Record(NamedTuple):

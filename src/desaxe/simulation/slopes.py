@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 
 from .events import Q, V
 from .history import Motion
-from .law import Law
 from .march import March
-from .panel import INTEGRAL, NODES, PLACES, RUNNING, SERIES, basis
+from .panel import INTEGRAL, NODES, PLACES, RUNNING, SERIES, Panel, basis
 from .result import FAILED, JAMS, LIMIT, SENSITIVITIES, Event, Simulation
 from .shifts import Shifts
 from .tangents import STARTS, Tangents
@@ -27,7 +26,7 @@ Array = NDArray[np.float64]
 BARELY = 1e-30  # rad/s: turning, for friction; without an effect of its own
 RESOLVED = 1e-8  # of a series: its last terms, at most
 LEAST = 1e-12  # of a column's largest coefficient: a panel with less need not resolve it
-AT_ONCE = 1000  # panels whose matrices are in memory
+AT_ONCE = 300  # panels whose matrices stay in the processor's cache
 HALVINGS = 10  # of a panel of the motion, at most
 WELL_BEFORE = 0.1  # of q: so far from a limit angle the friction has its digits
 SHORT, LONG = 0.95, 0.99  # of the last panel before a limit angle, and of several: their nodes have digits
@@ -56,15 +55,6 @@ class Trajectories(NamedTuple):
         size = np.abs(self.y) + np.abs(self.series).max(axis=2)
         least = LEAST * np.nanmax(size, axis=0, initial=0.0)
         return np.asarray((tail > RESOLVED * np.maximum(size, least)).any(axis=(1, 2)))
-
-
-class Stretch(NamedTuple):
-    """A law from an instant to another, and q, v and W at its start."""
-
-    law: Law
-    start: float
-    stop: float
-    y: Array
 
 
 class MotionSlopes:
@@ -106,10 +96,10 @@ class MotionSlopes:
             self.shifts.notes.clear()
         return course
 
-    def _stretches(self) -> list[Stretch]:
+    def _stretches(self) -> list[Panel]:
         """The panels of the motion; with friction those next to a limit angle at its end as one."""
-        panels = [panel for panel in self.run.panels if panel.stop > panel.start] or self.run.panels[:1]
-        pieces = [Stretch(panel.law, panel.start, panel.stop, panel.y) for panel in panels]
+        panels = self.run.panels
+        pieces = [panel for panel in panels if panel.stop > panel.start] or panels[:1]
         last = pieces.pop()
         if self.ends_at_limit and self.run.model.mu:
             end = copysign(0.5 * pi, self.run.y[Q])
@@ -147,19 +137,20 @@ class MotionSlopes:
         """The course through all pieces."""
         y, before = self._start(), self.pieces[0]
         ends, begin = local.sum(axis=2), np.empty((start.size, 2, len(self.wrt)))  # polynomials are 1 there
-        for row, k in enumerate(piece.tolist()):
+        rows = zip(piece.tolist(), ends[..., :2], ends[..., 2:], strict=True)
+        for row, (k, gain, forced) in enumerate(rows):
             own = self.pieces[k]
             if own.law is not before.law:
                 y = y + self.shifts.jump(before, own, y)
             if own.law.rests and own.stop > own.start:  # it has not only stopped where it started
                 y = y * [[1.0], [0.0]]
             before, begin[row] = own, y
-            y = y + ends[row, :, :2] @ y + ends[row, :, 2:]
+            y = y + gain @ y + forced
         return Trajectories(start, h, begin, local[..., 2:] + local[..., :2] @ begin[:, None])
 
     def _start(self) -> Array:
         """q_p and v_p at the start."""
-        q, v = self.pieces[0].y[:2]
+        q, v, _ = np.array(self.pieces[0].y)
         by_theta, by_omega = self.tangents.speeds(q, v)
         theta, omega = (self.tangents.flags(name) for name in STARTS)
         of_q = (theta - by_theta[2:]) / by_theta[0]
@@ -199,9 +190,10 @@ class MotionSlopes:
 
     def _rate_at_limit(self) -> float:
         """dq/dt at a limit angle."""
-        panel = self.run.panels[-1]
-        s = np.array([2.0 * (self.run.t - panel.start) / panel.h - 1.0])
-        return float(panel.rates[Q] @ SERIES.T @ basis(s, NODES - 1)[:, 0])
+        record = self.run.record
+        start, h = record.heads[-1, :2]
+        s = np.array([2.0 * (self.run.t - start) / h - 1.0])
+        return float(record.rates[-1, Q] @ SERIES.T @ basis(s, NODES - 1)[:, 0])
 
     def _break_away(self, event: Event, theta: Array) -> Array:
         """dt/dp of the instant from which the torque moves the crank: T = T_in at barely a speed."""
