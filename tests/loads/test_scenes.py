@@ -117,6 +117,33 @@ def test_plain_numbers_of_a_spring_are_in_the_units_of_the_scene():
     assert dx.scene(scene).inputs["F_Y"] == dx.spring("4 N/mm", free="120 mm")
 
 
+def test_a_list_of_loads_is_their_sum(tmp_path):
+    press = dx.Machine(ec=10, AB=40, BC=64, omega0=20, units="mm, deg, rad/s, kN")
+    load = (
+        press.spring(0.004, 120)
+        + press.damper("200 N s/m")
+        + press.over_Y([30, 100], [-0.9, 0], [0, 0])
+        - 0.04
+    )
+    path = press.replace(F_Y=load).to_scene(tmp_path / "press.toml", "T_in")
+    assert dx.Machine.read(path)["F_Y"] == load
+    scene = {"outputs": ["T_in"], "units": "mm, deg", "mechanism": {"ec": 10, "AB": 40, "BC": 64}}
+    scene |= {"motion": {"theta": [0, 90], "omega0": 20}}
+    parts = [{"spring": 4, "free": 120}, {"damper": "200 N s/m"}, -40]
+    read = dx.scene({**scene, "loads": {"F_Y": parts}}).inputs["F_Y"]
+    assert read(Y=100, V_C=-500) == pytest.approx(80 + 100 - 40)
+    jsonschema.validate({"outputs": ["T_in"], "loads": {"F_Y": parts}}, json_schema())
+    for wrong, message in (
+        ([{"spring": 4}, 5], "loads.F_Y #1.free is missing"),
+        ([{"damper": 1}, {"start": 0, "stop": 1, "num": 2}], "loads.F_Y #2: a sum is of loads and numbers"),
+        ([{"damper": 1}, [3]], "loads.F_Y #2"),
+    ):
+        with pytest.raises(SceneError, match=message):
+            dx.scene({**scene, "loads": {"F_Y": wrong}})
+    with pytest.raises(TypeError, match=r"2 spring: .* is not data"):
+        press.replace(F_Y=2 * press.spring(0.004, 120)).to_scene(tmp_path / "twice.toml", "T_in")
+
+
 REFUSED = {
     "{ spring = 4000 }": "loads.F_Y.free is missing: the position along Y",
     "{ spring = -1, free = 0 }": "loads.F_Y: stiffness = -1",

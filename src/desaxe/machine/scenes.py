@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..definitions.tables import tables_of
-from ..loads.along_motion import OverSpeed
+from ..loads.along_motion import OverSpeed, SumOfLoads
 from ..loads.angles import cycle
 from ..loads.elements import FREE, LINEAR, QUADRATIC, STIFFNESS, Damper, Spring
 from ..loads.load import Load, OverY, TableOverTheta
@@ -146,19 +146,23 @@ def _number(units: UnitSystem, name: str, value: float) -> float | str:
     return text if float(exact(name, text, INPUTS[name].unit)) == value else f"{value!r} {INPUTS[name].unit}"
 
 
-def load_table(
-    name: str, load: Load, units: UnitSystem, path: Path | None, texts: dict[Path, str]
-) -> dict[str, Any]:
-    """The table of a load for a scene at this path; TypeError for a load that is a function.
+def load_table(name: str, load: Load, units: UnitSystem, path: Path | None, texts: dict[Path, str]) -> Any:
+    """The table of a load for a scene at this path, of a sum those of its parts; TypeError for a function.
 
     Points are in the units of the scene where these stand for the same doubles, else in SI units with all
     their digits, so that the load that is read equals this one; many are the text of a file beside the path.
     """
+    if isinstance(load, SumOfLoads) and all(factor == 1.0 for factor, _ in load.terms):
+        parts: list[Any] = [load_table(name, part, units, path, texts) for part in load.members]
+        return [*parts, *([f"{load.constant!r} N"] if load.constant else [])]
     if type(load) in ELEMENTS:
         rows = zip(ELEMENTS[type(load)].items(), load.numbers.values(), strict=True)
         return {key: f"{value!r} {row.unit}" for (key, row), value in rows}
     if type(load) not in PLACES:
-        raise TypeError(f"{name}: {load!r} is not data, and cannot stand in a scene file; give a table")
+        raise TypeError(
+            f"{name}: {load!r} is not data, and cannot stand in a scene file; give tables, "
+            "springs, dampers, or a sum of these"
+        )
     over, key, place, si = PLACES[type(load)]
     period = [load.period] if isinstance(load, TableOverTheta) else []
     (places, own_period), along = _in_unit([load.tables[0].knots, period], units.of(place), si)
@@ -169,7 +173,8 @@ def load_table(
     more |= {"period": f"{own_period[0]!r} {along}" if own_period else None, key: along, "value": unit}
     points: Any = [list(row) for row in zip(places, *columns, strict=True)]
     if path is not None and len(points) > INLINE and over != "over_V":
-        file = path.with_name(f"{path.stem}_{name}.csv")
+        number = f"_{len(texts) + 1}" if path.with_name(f"{path.stem}_{name}.csv") in texts else ""
+        file = path.with_name(f"{path.stem}_{name}{number}.csv")
         heads = [f"{name} {way}" for way in WAYS[: len(columns)]] if over != "over_theta" else [name]
         lines = [",".join([f"{key} [{along}]", *heads]), *(",".join(map(repr, row)) for row in points)]
         texts[file], points = "\n".join(lines) + "\n", file.name

@@ -59,7 +59,7 @@ _VALUES = f'a number in SI units, text with a unit such as "125 mm" or "0.5 kg",
 _FORCE = (
     f'{_VALUES}, or a load that varies with the motion, such as {{over_theta = "press.csv"}}, '
     '{over_Y = [[0.05, -100], [0.1, -10]]}, {over_stroke = [[0, -80e3], [0.008, 0]], dead_centre = "outer"}, '
-    '{spring = "4 N/mm", free = "120 mm"} or {damper = "200 N s/m"}'
+    '{spring = "4 N/mm", free = "120 mm"} or {damper = "200 N s/m"}, or a list of these, which is their sum'
 )
 _MOTOR = (
     'a number in SI units, text with a unit, or a motor such as {over_omega = [["0 rpm", 30], '
@@ -90,7 +90,8 @@ VARYING = _table(
     distance=UNIT, value=UNIT, V_C=UNIT, bore=NUMBER, area=NUMBER, ambient=NUMBER, free=NUMBER,
     quadratic=NUMBER, kind=_one_of("cubic", "linear", "step", "smooth"),
 )  # fmt: skip
-FORCE = _rule(_FORCE, "number", "string", _list_of(NUMBER), VARYING)
+TERM = _rule(f"{_NUMBER}, or in a sum a load", "number", "string", VARYING)
+FORCE = _rule(_FORCE, "number", "string", _list_of(TERM), VARYING)
 DESIGN = _mapping_of(NUMBER, "a table of inputs, such as { ec = 0 }", INPUTS)
 AXES = _mapping_of(VALUES, 'a table of inputs, such as { ec = [0, "50 mm"] }', INPUTS)
 _PATTERN = {"anyOf": [{"enum": [*NAMES]}, {"pattern": r"^p\d+(\.\d+)?$"}]}

@@ -10,11 +10,11 @@ from ...loads.motors import Motor, kloss, over_omega
 from ...loads.pressure import PISTON
 from ...loads.resolve import plain_units, settled
 from ...loads.tabulated import over_stroke, over_theta, over_Y
-from ...mechanism.quantity_units import UnitSystem
+from ...mechanism.quantity_units import SI, UnitSystem
 from ...mechanism.read import in_si
 from ...support.extras import MissingExtraError
 from ..schema import SceneError, shown
-from .values import Value, values_of
+from .values import Value, is_sum, values_of
 
 RANGE = ("start", "stop", "num", "step")
 
@@ -74,6 +74,9 @@ def force_of(key: str, name: str, written: Any, folder: Path | None, units: Unit
     """
     if isinstance(written, Load):
         return cast(Value, _settled(key, name, written, units))
+    if is_sum(written):
+        parts = [force_of(f"{key} #{k}", name, part, folder, units) for k, part in enumerate(written, 1)]
+        return _sum(key, parts, units)
     if not isinstance(written, Mapping) or (kind := _kind_of(written, KINDS)) is None:
         if isinstance(written, Mapping):
             _refuse(key, written, RANGE, lambda wrong: f"it belongs to {_kinds_with(wrong)}")
@@ -92,6 +95,17 @@ def force_of(key: str, name: str, written: Any, folder: Path | None, units: Unit
             f"the scene are not: name the units of its columns in its heading, or by {beside} beside the file"
         )
     return cast(Value, _settled(key, name, load, units))
+
+
+def _sum(key: str, parts: Sequence[Any], units: UnitSystem) -> Value:
+    """The sum of loads and numbers."""
+    wrong = next((k for k, part in enumerate(parts, 1) if isinstance(part, tuple)), None)
+    if wrong is not None:
+        raise SceneError(f"{key} #{wrong}: a sum is of loads and numbers, not of a range of values")
+    loads = [part for part in parts if isinstance(part, Load)]
+    total = sum(loads[1:], loads[0]).in_units(SI)
+    number = sum(part for part in parts if not isinstance(part, Load))
+    return cast(Value, (total + number if number else total).in_units(units))
 
 
 def motor_of(key: str, written: Mapping[str, Any], folder: Path | None, units: UnitSystem) -> Motor:

@@ -99,6 +99,11 @@ def _exactly(name: str, written: float | str, units: UnitSystem) -> Fraction:
     return exact(name, with_unit_in(units, name, written), INPUTS[name].unit)
 
 
+def is_sum(written: Any) -> bool:
+    """True for a list with a table of a load: it is the sum of its parts."""
+    return isinstance(written, list) and any(isinstance(part, Mapping) for part in written)
+
+
 def design_of(key: str, written: Mapping[str, float | str], units: UnitSystem) -> dict[str, float]:
     """A table of inputs in SI units."""
     only_inputs(key, written)
@@ -114,7 +119,8 @@ def only_inputs(key: str, names: Iterable[str]) -> None:
 
 def written_inputs(data: Mapping[str, Any]) -> dict[str, Any]:
     """The inputs as the scene has them, of a range its ends: what slips of units are looked for in."""
-    pairs = [pair for section in SECTIONS for pair in data.get(section, {}).items()]
+    every = [pair for section in SECTIONS for pair in data.get(section, {}).items()]
+    pairs = [(name, value) for name, value in every if not is_sum(value)]
     return {
         name: Between(value.get("start"), value.get("stop")) if isinstance(value, Mapping) else value
         for name, value in pairs
