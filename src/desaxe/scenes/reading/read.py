@@ -90,7 +90,7 @@ def _content(
     requests: tuple[str, ...],
 ) -> Content:
     inputs = _inputs(data, folder, units)
-    warn_of_slips(written_inputs(data), units, 5, inputs)
+    warn_of_slips(written_inputs(data), units, 6, inputs)
     if "omega" in inputs and "omega0" in inputs:
         raise SceneError(
             f"motion.omega = {inputs['omega']}: give omega0 (the law) or omega (a state), not both"
