@@ -26,7 +26,7 @@ def found_without(name):
 
 
 @pytest.fixture(scope="module")
-def found():
+def result():
     """A quick audit, as where heyoka is not installed: what it says does not depend on the machine."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(contenders_module, "find_spec", found_without("heyoka"))
