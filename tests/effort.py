@@ -5,6 +5,10 @@ can afford is marked `thorough`.
 """
 
 import os
+from collections.abc import Iterable
+from typing import Any
+
+import pytest
 
 VARIABLE = "DESAXE_THOROUGH"
 
@@ -13,3 +17,11 @@ def cases(few: int, many: int, every: int = 0) -> int:
     """The number of cases to draw; `every` of them by DESAXE_THOROUGH=all, which takes hours."""
     asked = os.environ.get(VARIABLE)
     return max(many, every) if asked == "all" else many if asked else few
+
+
+def first(count: int, values: Iterable[Any]) -> list[Any]:
+    """The parameters of a test, of which all but the first `count` are for the thorough run alone."""
+    rows = [value if isinstance(value, tuple) else (value,) for value in values]
+    return [
+        pytest.param(*row, marks=pytest.mark.thorough if k >= count else ()) for k, row in enumerate(rows)
+    ]

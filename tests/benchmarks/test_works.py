@@ -54,7 +54,7 @@ def test_peaks_of_blocks_are_those_of_the_whole():
     ("name", "bound"),
     [
         ("peaks", 1e-4),  # the best of 720 angles
-        ("derivatives", 1e-12),
+        pytest.param("derivatives", 1e-12, marks=pytest.mark.thorough),
         ("motors", 1e-12),
         ("rubbing", 1e-12),
         ("generated-forces-points", 1e-12),

@@ -131,7 +131,7 @@ def check(draw, result):
 @pytest.mark.sampled
 @pytest.mark.parametrize("part", range(4))
 def test_a_peak_is_that_of_constant_forces_on_each_side_of_the_jumps(part):
-    for seed in range(part, cases(16, 200, 2000), 4):
+    for seed in range(part, cases(8, 200, 2000), 4):
         draw = Draw(seed)
         check(draw, dx.peak(draw.name, kind=draw.kind, theta=draw.theta, **draw.given))
 
@@ -182,7 +182,7 @@ def moved(draw, top, parameter, place=position):
 @pytest.mark.sampled
 def test_the_gradient_moves_with_the_jump():
     checked = 0
-    for seed in range(cases(7, 200, 1000)):
+    for seed in range(cases(4, 200, 1000)):
         draw = Draw(30_000 + seed)
         draw.name, draw.kind, draw.theta = ("T_in", "F_C_Y", "N_C")[seed % 3], "max", (0.0, 2 * pi)
         result = dx.peak(draw.name, kind="max", theta=draw.theta, **draw.given)

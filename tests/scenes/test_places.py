@@ -70,8 +70,10 @@ def test_overwrite_replaces_it(tmp_path):
     assert main(["run", scene_file("a.csv")]) == 0
 
 
-@pytest.mark.parametrize("data", ["a.csv", "a.nc", "a.npz", "a.xlsx", "a.zarr"])
-@pytest.mark.parametrize("picture", ["a.png", "a.svg", "a.pdf"])
+@pytest.mark.parametrize(
+    ("data", "picture"),
+    [("a.csv", "a.png"), ("a.nc", "a.svg"), ("a.npz", "a.pdf"), ("a.xlsx", "a.png"), ("a.zarr", "a.svg")],
+)
 def test_a_rerun_replaces_its_own_outputs_wherever_they_were_copied_to(data, picture):
     """Under other names; what has lost its mark is left alone."""
     first = scene_file(data, picture)

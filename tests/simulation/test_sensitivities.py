@@ -8,7 +8,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.simulation.panel import Record
-from tests.effort import cases
+from tests.effort import cases, first
 from tests.motions import true_slopes
 from tests.simulation.test_loads import MACHINE
 from tests.simulation.test_loads import drawn as random_designs
@@ -224,7 +224,7 @@ def test_a_limit_angle_and_when_it_is_reached(omega_start, mu):
 
 @pytest.mark.sampled
 def test_random_machines_up_to_a_limit_angle():
-    designs, wrt = random_designs(cases(60, 200, 1_000), 8), ["AB", "ec", "m_slider", "theta0", "torque"]
+    designs, wrt = random_designs(cases(20, 200, 1_000), 8), ["AB", "ec", "m_slider", "theta0", "torque"]
     call = {"t_end": 0.8, "times": [0.0]}
     limit = np.flatnonzero(dx.simulate(**call, **designs)["status"] == 2)
     assert limit.size >= 5
@@ -293,7 +293,7 @@ UP_TO_A_LIMIT = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("case", UP_TO_A_LIMIT.values(), ids=UP_TO_A_LIMIT)
+@pytest.mark.parametrize("case", first(1, UP_TO_A_LIMIT.values()))
 def test_the_work_of_friction_up_to_a_limit_angle_is_the_same_at_every_rtol(case):
     """Against central differences of two steps."""
     call = {"t_end": 2.0, "ec": 0.048, "g_Y": -9.81, **case}

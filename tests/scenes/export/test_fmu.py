@@ -473,7 +473,7 @@ def started(place, folder):
     return int(run(folder / "main"))
 
 
-@pytest.mark.sampled
+@pytest.mark.thorough
 def test_sanitizers_find_nothing_in_a_thousand_random_presses(made, tmp_path):
     """Parameters of which some are bad: what can start moves, what cannot is refused."""
     assert 200 < started(made("torque"), tmp_path) < 1000
