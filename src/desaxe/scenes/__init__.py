@@ -8,6 +8,8 @@ content      the machine and its requests, checked and in SI units
 run          Content -> values, peaks, checks, then files
 report       the result as text
 command      `desaxe run`
+load_tables  a load as the table of a scene file
+toml_text    keys and values as TOML
 sweep        `desaxe.sweep`
 reading/     a file or mapping as Content
 parts/       its requests, each read, run and explained: grid, checks, peaks, steady states, pictures

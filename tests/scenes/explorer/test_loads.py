@@ -81,6 +81,32 @@ def test_a_load_that_follows_the_slider(kind, numbers_of, folder):
     assert replace(saved.inputs["F_Y"], unit=None) == load
 
 
+SPRING, DAMPER = dx.spring(4e3, 0.05), dx.damper(30.0, 4.0)
+ELEMENTS = {
+    "spring": SPRING,
+    "damper": DAMPER,
+    "over_V": dx.over_V([-3.0, 0.0, 5.0], [40.0, 0.0, -90.0]),
+    "sum": SPRING + DAMPER + dx.over_theta(ANGLES, FORCES) - 20.0,
+}
+
+
+@pytest.mark.parametrize("kind", ELEMENTS)
+def test_springs_dampers_and_sums(kind, visit, folder):
+    """Values and total derivatives; a constant that is added; the scene in mm."""
+    page = visit(dx.explore(path=folder / f"{kind}.html", F_Y=ELEMENTS[kind], units="mm, deg, rpm", **PRESS))
+    points = [[0.3, 0.0, 0.01, 200.0], [1.7, 30.0, -0.01, -90.0], [4.4, 0.0, 0.0, 150.0]]
+    for (theta, added, ec, omega0), result in zip(points, page.evaluate(UNDER, points), strict=True):
+        under = ELEMENTS[kind] + added
+        right = dx.evaluate(NAMES, theta=theta, F_Y=under, **{**PRESS, "ec": ec, "omega0": omega0})
+        assert result == pytest.approx([right[name] for name in NAMES], rel=1e-10, abs=1e-8)
+    angles = {"theta": np.linspace(0.0, 6.0, 5), **PRESS}
+    for added in (0.0, 25.0):
+        page.evaluate("(added) => { window.desaxe.state.designs[0].F_Y = added; }", added)
+        load = dx.scene(tomllib.loads(page.evaluate("window.desaxe.sceneText()"))).inputs["F_Y"]
+        expected = dx.evaluate("T_in", F_Y=ELEMENTS[kind] + added, **angles)
+        assert dx.evaluate("T_in", F_Y=load, **angles) == pytest.approx(expected, rel=1e-12)
+
+
 JUMPS = {
     "over theta": dx.over_theta([0.3, 1.0, 1.0, 4.0], [0.0, -4e5, -50.0, 20.0], kind="linear"),
     "four-stroke": dx.over_theta([0.0, 7.1, 7.1, 9.0], [0.0, -4e5, 0.0, 0.0], kind="linear", period=12.566),
@@ -104,7 +130,5 @@ def test_a_peak_at_a_jump_is_its_one_sided_limit(kind, name, numbers_of, folder)
 
 
 def test_a_function_is_refused(folder):
-    with pytest.raises(
-        TypeError, match=r"explore: F_Y = .* a page holds numbers and tables over theta, Y or a stroke"
-    ):
+    with pytest.raises(TypeError, match=r"explore: F_Y = .* a page holds numbers, tables, springs, dampers"):
         dx.explore(path=folder / "none.html", F_Y=lambda theta: 2.0 * np.sin(theta), **PRESS)

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 from ...compiler.languages.javascript import emit_javascript
 from ...compiler.program import Line, Program, renamed
 from ...loads.angles import cycle
-from ...loads.lines import line_of, totals_of
-from ...loads.load import Load, OverY, TableOverTheta
+from ...loads.lines import lines_of, tables_of, totals_of
+from ...loads.load import Load
 from ...loads.resolve import plan_of, split
 from ...mechanism.catalogue import Quantity, law_name, quantities, quantity
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
@@ -64,7 +64,7 @@ class PageContent(NamedTuple):
     functions: tuple[PageFunction, ...]
     left_out: Mapping[str, tuple[float, ...]]  # input -> its values that no design has
     given: tuple[str, ...]  # the inputs that were given
-    loads: Mapping[str, TableOverTheta | OverY] = MappingProxyType({})
+    loads: Mapping[str, Load] = MappingProxyType({})
     units: UnitSystem = SI
     fields: UnitSystem = SI
     definitions: tuple[Definition, ...] = ()  # that the quantities use
@@ -82,7 +82,7 @@ def content(
 ) -> PageContent:
     """The content for these inputs; `names` are the quantities, those of the motion without.
 
-    A load that varies with the motion is a table; what the page changes of it is a constant added to it.
+    A load that varies with the motion is a sum of tables; the page adds a constant to it.
     """
     loads = _tables(inputs)
     given: dict[str, Value] = {"alpha": 0.0, **inputs, **dict.fromkeys(loads, 0.0)}
@@ -104,15 +104,14 @@ def content(
     return PageContent(title, branch, theta, designs, shown, functions, left, named, loads, definitions=own)
 
 
-def _tables(inputs: Mapping[str, Any]) -> dict[str, TableOverTheta | OverY]:
-    """The loads that vary with the motion; TypeError for one that is no table."""
-    result = {}
-    for name, load in split(inputs)[1].items():
-        if not isinstance(load, (TableOverTheta, OverY)):
+def _tables(inputs: Mapping[str, Any]) -> dict[str, Load]:
+    """The loads that vary with the motion; TypeError for one that is no sum of tables."""
+    result: dict[str, Load] = split(inputs)[1]
+    for name, load in result.items():
+        if not tables_of(name, load):
             raise TypeError(
-                f"explore: {name} = {load!r}: a page holds numbers and tables over theta, Y or a stroke"
+                f"explore: {name} = {load!r}: a page holds numbers, tables, springs, dampers and their sums"
             )
-        result[name] = load
     return result
 
 
@@ -180,7 +179,7 @@ def _function(
     program = specialise(asked.names, asked.form, asked.fixed)
     if plan.loads:
         way = TurningSense("omega", "alpha") if "omega" in given else TurningSense("omega0")
-        lines = [line_of(*item) for item in plan.loads.items()]
+        lines = [lines_of(*item) for item in plan.loads.items()]
         outputs = dict(zip(every, program.outputs, strict=True))
         program = _with_constants(with_totals(program, outputs, lines, totals_of(plan), way), plan.loads)
     return PageFunction(base, plan.shown, program.inputs, emit_javascript(program, f"of_{base}"))

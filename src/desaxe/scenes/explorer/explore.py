@@ -39,8 +39,8 @@ def explore(
     source  a scene (`desaxe.scene`, a TOML file or a mapping); or give inputs instead, as to `evaluate`:
             ec, AB, BC [m], omega0 (or omega) [rad/s], alpha [rad/s^2], masses and loads, each a number,
             text with a unit, or a list, whose values are compared (all of
-            up to five, four of more; the page says which are not shown). F_X and F_Y may be tables over
-            theta, Y or the stroke, which the page changes by a constant
+            up to five, four of more; the page says which are not shown). F_X and F_Y may be tables,
+            springs, dampers or sums of these, to which the page adds a constant
     path    the file to write
     branch  of inputs: +1 (the papers) or -1; a scene has its own, and its own title
     title   what the page is headed with

@@ -8,21 +8,35 @@ from typing import Any
 
 from ...compiler.languages.javascript import HEADER, TABLES
 from ...compiler.languages.shared import arrays_of
-from ...definitions.tables import tables_of
-from ...loads.load import OverY, TableOverTheta
+from ...definitions.tables import tables_of as definitions_of
+from ...loads.along_motion import OverSpeed, members_of
+from ...loads.elements import Damper, Spring
+from ...loads.lines import tables_of
+from ...loads.load import Load, OverY, TableOverTheta
+from ...loads.stroke import OverStroke
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import parts
-from ...mechanism.quantity_units import UnitSystem
+from ...mechanism.quantity_units import SI, UnitSystem
 from ...mechanism.status import PointStatus
 from ...support.extras import needed
 from ...support.template import file_text, filled
 from ...support.written import UNSEALED, sealed, write_whole
 from ...units.system import DIMENSIONS
+from ..load_tables import load_table
+from ..toml_text import value_text
 from .content import PageContent, closed_functions, left_out_text
 
 # In the order in which they build on each other.
 SCRIPTS = ("numbers", "designs", "words", "mechanism", "charts", "controls", "files", "main")
 ABOUT = ("unit", "meaning", "least", "limit", "section")  # what a page knows of an input
+WORDS: dict[type, str] = {
+    TableOverTheta: "over θ",
+    OverY: "over Y",
+    OverStroke: "over the stroke",
+    OverSpeed: "over the speed",
+    Spring: "a spring",
+    Damper: "a damper",
+}
 # A page repeats its lines for each quantity; what they mean stands in generated/program.py.
 _COMMENT = re.compile(r"^\s*//.*\n|(?<=;) // .*", re.MULTILINE)
 
@@ -60,7 +74,8 @@ def _program(content: PageContent) -> str:
     closed = closed_functions(content.branch)
     sources = [*closed.values(), *(function.source for function in content.functions)]
     names = [*closed, *(function.quantity for function in content.functions)]
-    arrays = arrays_of({name: load.arrays() for name, load in content.loads.items()})
+    parts = [part for item in content.loads.items() for part in tables_of(*item).items()]
+    arrays = arrays_of({name: table.arrays() for name, table in parts})
     columns = [f"const {name} = {json.dumps([*column])};" for name, column in arrays.items()]
     rows = [f"  {name}: of_{name}," for name in names]
     code = _COMMENT.sub("", "\n".join(sources))
@@ -87,24 +102,35 @@ def _data(content: PageContent) -> dict[str, Any]:
         "dimensions": {unit: name.replace(" ", "_") for name, unit in DIMENSIONS.items()},
         "parameters": {name: row.unit for name, row in INPUTS.items()},
         "functions": {f.quantity: {"names": f.names, "inputs": f.inputs} for f in content.functions},
-        "loads": {name: _load(load) for name, load in content.loads.items()},
+        "loads": {name: _load(name, load) for name, load in content.loads.items()},
         "quantities": {row.name: _about(row.name, row.unit, row.meaning) for row in content.quantities},
-        "definitions": tables_of(content.definitions),
+        "definitions": definitions_of(content.definitions),
         "status": {str(int(status)): status.words for status in PointStatus},
     }
 
 
-def _load(load: TableOverTheta | OverY) -> dict[str, Any]:
-    """A table: cubics in the distance from a knot; one over Y or the stroke has them for each way."""
-    if isinstance(load, TableOverTheta):
-        own = {"knots": load.table.knots, "rows": load.table.rows, "period": load.period}
-        own |= {"jumps": load.table.jumps}
-    else:
-        inward = None if load.inward is None else load.inward.rows
-        own = {"knots": load.outward.knots, "rows": load.outward.rows, "inward": inward}
-        jumps = {knot for table in load.tables for knot in table.jumps}
-        own |= {"centre": load.centre, "jumps": sorted(jumps)}
-    return {**own, "over": load.over, "kind": load.kind}
+def _load(name: str, load: Load) -> dict[str, Any]:
+    """A load in words, as text of a scene in SI units and of one in others, and where its parts jump."""
+    table = load_table(name, load, SI, None, {})
+    tables = [row for row in (table if isinstance(table, list) else [table]) if isinstance(row, dict)]
+    plain = value_text(table)
+    for row in tables:
+        if not row.keys() & {"spring", "damper"}:
+            row.setdefault("value", INPUTS[name].unit)
+    words = ", ".join(dict.fromkeys(WORDS[type(member)] for member in members_of([load])))
+    parts = [_jumps(part) for part in tables_of(name, load).values()]
+    return {"words": words, "saved": [plain, value_text(table)], "parts": parts}
+
+
+def _jumps(table: Load) -> dict[str, Any]:
+    """The column along which a table is looked up, and where it jumps."""
+    jumps = sorted({knot for way in table.tables for knot in way.jumps})
+    if isinstance(table, TableOverTheta):
+        return {"over": "theta", "jumps": jumps, "period": table.period}
+    if isinstance(table, OverY):
+        ways = {"inward": table.inward is not None, "centre": table.centre}
+        return {"over": table.over, "jumps": jumps, **ways}
+    return {"over": "V_C", "jumps": []}
 
 
 def _units(units: UnitSystem) -> dict[str, str]:

@@ -99,8 +99,8 @@ function loadWords(design) {
   const there = Object.keys(CONTENT.inputs).filter((name) => !SLIDERS.includes(name));
   const words = there.map((name) => {
     const own = design[name] ? `${plainSymbol(name, false)} = ${shownInput(name, design[name])}` : "";
-    const over = { theta: "θ", Y: "Y", stroke: "the stroke" }[CONTENT.loads[name]?.over];
-    return over ? `${plainSymbol(name, false)} over ${over}${own ? `, and ${own}` : ""}` : own;
+    const words = CONTENT.loads[name]?.words;
+    return words ? `${plainSymbol(name, false)} ${words}${own ? `, and ${own}` : ""}` : own;
   });
   return words.filter(Boolean).join(", ");
 }

@@ -54,9 +54,9 @@ function jumpAngles(design) {
   const dead = turn ? [turn.outer, turn.inner].flatMap((angle) => repeated(angle, TURN)) : [];
   const samples = [...evenAngles(), ...dead].sort((a, b) => a - b);
   const Y = (theta) => valueAt("Y", design, theta);
-  for (const { over, jumps, inward, centre, period } of Object.values(CONTENT.loads)) {
+  for (const { over, jumps, inward, centre, period } of Object.values(CONTENT.loads).flatMap((load) => load.parts)) {
     if (over === "theta") found.push(...jumps.flatMap((angle) => repeated(angle, period)));
-    else if (over === "Y" || turn) {
+    else if (over === "Y" || (over === "stroke" && turn)) {
       if (inward) found.push(...dead);
       const origin = over === "Y" ? null : Y(turn[centre.slice(2)]);
       const place = (theta) => (origin === null ? Y(theta) : Math.abs(Y(theta) - origin));

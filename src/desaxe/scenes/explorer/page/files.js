@@ -24,16 +24,11 @@ function sceneText() {
   const differing = differingInputs(designs);
   const kept = differing.length === 1 ? designs : designs.slice(0, 1);
   const own = Object.entries(units.values).map(([unit, shown]) => `${CONTENT.dimensions[unit] ?? unit} = "${shown}"`);
-  const tableOf = (name, added) => {
-    const { over, knots, rows, inward, centre, period, kind } = CONTENT.loads[name];
-    const values = (k) => [rows, ...(inward ? [inward] : [])].map((way) => way[k + 1][0] + added);
-    const points = knots.map((x, k) => `[${[x, ...values(k)].join(", ")}]`).join(", ");
-    const more = { theta: `, period = ${period}`, stroke: `, dead_centre = "${centre?.slice(2)}"` }[over] ?? "";
-    const [place, si] = { theta: ["theta", "rad"], Y: ["Y", "m"], stroke: ["distance", "m"] }[over];
-    const said = own.length ? `, ${place} = "${si}", value = "N"` : "";
-    return `{ over_${over} = [${points}], kind = "${kind}"${more}${said} }`;
+  const loadOf = (name, added) => {
+    const text = CONTENT.loads[name].saved[own.length ? 1 : 0];
+    return added ? `[${text.startsWith("[") ? text.slice(1, -1) : text}, "${added} N"]` : text;
   };
-  const valueOf = (name) => name in CONTENT.loads ? tableOf(name, kept[0][name]) : (differing.length === 1 && name === differing[0]
+  const valueOf = (name) => name in CONTENT.loads ? loadOf(name, kept[0][name]) : (differing.length === 1 && name === differing[0]
     ? `[${[...new Set(kept.map((d) => written(name, d[name])))].join(", ")}]`
     : written(name, kept[0][name]));
   const told = own.length ? "" : ", in SI units and radians";
