@@ -21,7 +21,7 @@ def cases(few: int, many: int, every: int = 0) -> int:
 
 def first(count: int, values: Iterable[Any]) -> list[Any]:
     """The parameters of a test, of which all but the first `count` are for the thorough run alone."""
-    rows = [value if isinstance(value, tuple) else (value,) for value in values]
+    rows = [value if type(value) is tuple else (value,) for value in values]
     return [
         pytest.param(*row, marks=pytest.mark.thorough if k >= count else ()) for k, row in enumerate(rows)
     ]

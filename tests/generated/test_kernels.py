@@ -25,10 +25,12 @@ from desaxe.mechanism.program import _text
 from desaxe.runtime.executor import CompiledKernel
 from tests.compiler.programs import LINKS, LOADS
 from tests.derive.derived import derivation
-from tests.effort import cases
+from tests.effort import cases, first
 
 ROOT = Path(__file__).parents[2]
 NAMES = [group.name for group in GROUPS]
+MAIN = ("motion", "forces", "sensitivities")  # the others compile in the thorough run alone
+EACH = first(3, sorted(NAMES, key=lambda name: name not in MAIN))
 OUTPUTS = {group.name: group.outputs for group in GROUPS}
 INPUTS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
 
@@ -73,7 +75,7 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize("group", NAMES)
+@pytest.mark.parametrize("group", EACH)
 @pytest.mark.parametrize("branch", [1, pytest.param(-1, marks=pytest.mark.thorough)])
 def test_a_kernel_gives_what_evaluate_gives(group, branch):
     """Where there is nothing to give, too: NaN, and the same status."""
@@ -92,7 +94,7 @@ def test_a_kernel_gives_what_evaluate_gives(group, branch):
         np.testing.assert_allclose(result[name], expected[name], rtol=1e-11, atol=1e-13 * scale, err_msg=name)
 
 
-@pytest.mark.parametrize("group", GROUPS, ids=lambda group: group.name)
+@pytest.mark.parametrize("group", first(2, sorted(GROUPS, key=lambda g: g.name not in MAIN[:2])), ids=lambda group: group.name)
 def test_both_ways_to_machine_code_have_the_same_bits(group):
     """The lines of a module by numba, and by the executor of the library: next to change points, too."""
     count, rng = cases(1_500, 20_000), np.random.default_rng(7)
@@ -122,7 +124,7 @@ def module_kind(group, name):
     return import_module(f"desaxe.generated.{group.name}").OUTPUTS[name]
 
 
-@pytest.mark.parametrize("group", NAMES)
+@pytest.mark.parametrize("group", EACH)
 def test_it_broadcasts(group):
     columns = points(5)
     grid = {name: values[:, None] for name, values in columns.items()} | {"theta": np.array([0.1, 0.2, 0.3])}
@@ -133,7 +135,7 @@ def test_it_broadcasts(group):
         assert all(np.array_equal(result[name][:, column], row[name], equal_nan=True) for name in row)
 
 
-@pytest.mark.parametrize("group", NAMES)
+@pytest.mark.parametrize("group", EACH)
 def test_its_outputs_are_those_of_the_group(group):
     module = import_module(f"desaxe.generated.{group}")
     assert OUTPUTS[group] == tuple(module.OUTPUTS)
@@ -142,7 +144,7 @@ def test_its_outputs_are_those_of_the_group(group):
     }
 
 
-@pytest.mark.parametrize("group", NAMES)
+@pytest.mark.parametrize("group", EACH)
 def test_an_angle_of_any_size_is_taken(group):
     """Beyond the reach of the polynomials, too: as the angle that mpmath leaves of it within a turn."""
     limit, design = constants().limit, {"ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": 10.0}
@@ -158,7 +160,7 @@ def test_an_angle_of_any_size_is_taken(group):
         np.testing.assert_allclose(result[name], right[name], rtol=1e-12, atol=1e-13 * scale, err_msg=name)
 
 
-@pytest.mark.parametrize("group", NAMES)
+@pytest.mark.parametrize("group", EACH)
 def test_numbers_and_integers_are_taken(group):
     point = {
         "theta": 1,

@@ -15,6 +15,7 @@ from desaxe.cli.command import main
 from desaxe.scenes.document.blocks import Document, Image, Section, Text
 from desaxe.scenes.document.page import write_document
 from desaxe.scenes.document.render import html, markdown
+from tests.effort import first
 
 PRESS = dx.Machine(ec=10, AB=50, BC=200, omega0=300, m_slider=4, units="mm, deg, rpm")
 LOADED = PRESS.replace(F_Y=PRESS.over_theta([0, 30, 180], [-3000, 0, 0], kind="step"))
@@ -157,7 +158,7 @@ MADE = {
 }
 
 
-@pytest.mark.parametrize("made", MADE)
+@pytest.mark.parametrize("made", first(1, ["over Y", "step", "user-defined"]))
 def test_its_command_makes_it_again(made, tmp_path):
     machine, path = MADE[made], tmp_path / "a.md"
     outputs = "pv" if machine.definitions else None
