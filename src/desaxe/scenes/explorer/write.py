@@ -34,8 +34,8 @@ WORDS: dict[type, str] = {
     OverY: "over Y",
     OverStroke: "over the stroke",
     OverSpeed: "over the speed",
-    Spring: "a spring",
-    Damper: "a damper",
+    Spring: "by a spring",
+    Damper: "by a damper",
 }
 # A page repeats its lines for each quantity; what they mean stands in generated/program.py.
 _COMMENT = re.compile(r"^\s*//.*\n|(?<=;) // .*", re.MULTILINE)
