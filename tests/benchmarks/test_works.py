@@ -53,7 +53,7 @@ def test_peaks_of_blocks_are_those_of_the_whole():
 @pytest.mark.parametrize(
     ("name", "bound"),
     [
-        ("peaks", 1e-4),  # the best of 720 angles
+        pytest.param("peaks", 1e-4, marks=pytest.mark.thorough),  # the best of 720 angles
         pytest.param("derivatives", 1e-12, marks=pytest.mark.thorough),
         ("motors", 1e-12),
         ("rubbing", 1e-12),

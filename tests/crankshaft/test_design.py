@@ -40,6 +40,7 @@ def test_the_best_phase_for_a_torque_at_an_angle():
     assert best["phase[1]"] == pytest.approx(phases[torque.argmax()], abs=0.02)
 
 
+@pytest.mark.thorough
 def test_the_best_phase_for_the_mean_square_of_a_torque():
     best = THREE.optimize(minimize=("rms", "T_in"), over={"phase[1]": (60, 170)}, starts=1)
     phases, theta = np.linspace(60.0, 170.0, 1101), np.arange(0.0, 360.0, 3.0)

@@ -204,6 +204,7 @@ def standing(theta, out, back):
     return -1e-3 * AB * rod * np.sin(theta + psi)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("loads", first(1, WAYS))
 def test_a_drive_under_loads_that_differ_by_the_way(loads, tmp_path):
     """Starting torque by free bodies at rest, the torque by single machines that are shifted."""

@@ -107,6 +107,7 @@ def in_another_process(work):
     return thing.run().dataset.twin.values.tolist() if inputs is None else thing(**inputs)
 
 
+@pytest.mark.thorough
 def test_definitions_travel_with_what_was_made():
     scenes = [dx.scene(tables(factor)) for factor in (2, 3)]
     machines = [dx.Machine(tables(factor)) for factor in (2, 3)]

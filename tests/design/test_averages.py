@@ -177,7 +177,7 @@ def cells():
     for load in LOADS:
         for margin in (0.08, 1e-3, 1e-6, 1e-8, 1e-10):
             for friction in (False, True):
-                default = (margin == 0.08 and friction and load in ("smooth", "kink", "jump over Y")) or (
+                default = (margin == 0.08 and friction and load in ("smooth", "kink")) or (
                     margin == 1e-8 and load == "jump over Y" and friction
                 )
                 marks = [] if default else [pytest.mark.thorough]

@@ -240,6 +240,7 @@ def test_a_turn_with_tolerances_against_the_peaks_of_its_corners():
     assert -result["lower"] >= peaks.max() * (1 - 1e-14)
 
 
+@pytest.mark.thorough
 def test_friction_and_a_torque_over_a_turn_against_many_points():
     box = LOADED | {"theta": TURN, "m_rod": between(1.0, 1.1), "mu": between(0.1, 0.11)}
     theta, rod, mu = np.meshgrid(np.linspace(*TURN, 401), [1.0, 1.1], [0.1, 0.11])

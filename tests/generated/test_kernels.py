@@ -179,7 +179,7 @@ def test_numbers_and_integers_are_taken(group):
 
 
 @pytest.mark.parametrize(
-    "group", [name if name in ("position", "motion") else pytest.param(name, marks=pytest.mark.thorough) for name in NAMES]
+    "group", [name if name == "motion" else pytest.param(name, marks=pytest.mark.thorough) for name in NAMES]
 )
 def test_a_grid_a_point_and_a_loop_of_ones_own_give_what_arrays_give(group):
     """Designs of both forms; each axis is the innermost once, with read-only and strided inputs and outputs."""
@@ -256,6 +256,7 @@ def test_what_is_wrong_is_named(change, message):
             call(**{"theta": 1.0, "ec": 0.0, "AB": 0.1, "BC": 0.3, "omega0": 1.0} | change)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("first", ["generated", pytest.param("desaxe.generated", marks=pytest.mark.thorough)])
 def test_a_clone_has_one_name_for_its_kernels_and_the_other_says_so(first, tmp_path):
     """Whatever the order: numba keeps machine code by file, and its content by the module's name."""

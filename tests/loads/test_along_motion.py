@@ -196,7 +196,7 @@ def loads_of(numbers):
     )
 
 
-@pytest.mark.parametrize("mu", [0.0, 0.1])
+@pytest.mark.parametrize("mu", first(1, [0.1, 0.0]))
 def test_motions_and_steady_states_have_derivatives_by_the_numbers_of_loads(mu):
     def run(numbers, **more):
         load = loads_of(numbers)

@@ -171,6 +171,7 @@ def test_what_is_no_load_is_refused(load, tmp_path):
         dx.scene(path)
 
 
+@pytest.mark.thorough
 def test_a_compiled_module_holds_the_table(tmp_path):
     scene = dx.scene(write(tmp_path, LOADS["points"]))
     path = dx.compile(scene, tmp_path / "press_kernels.py")

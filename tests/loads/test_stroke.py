@@ -135,7 +135,7 @@ def test_a_peak_is_that_of_constant_forces_on_each_side_of_the_jumps(digits):
         jumps.check(draw, dx.peak(draw.name, kind=draw.kind, theta=draw.theta, **draw.given))
 
 
-@pytest.mark.sampled
+@pytest.mark.thorough
 def test_the_gradient_of_a_peak_at_a_jump_moves_with_the_dead_centre(digits):
     checked = 0
     for seed in range(cases(2, 12, 600)):

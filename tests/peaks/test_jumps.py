@@ -328,6 +328,7 @@ def test_optimize_finds_the_least_of_the_truth():
     assert best["value"] <= min(press_peak(BC) for BC in (0.2999, 0.3, 0.3001)) * (1 + 1e-9)
 
 
+@pytest.mark.thorough
 def test_run_tells_the_side(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     rows = ", ".join(f"[{x!r}, {out}, 0]" for x, out in zip(POSITIONS, (0, -80e3, -80e3), strict=True))

@@ -82,6 +82,7 @@ def test_peaks_of_other_designs_are_for_a_scene_of_their_own():
         dx.sweep(SCENE, store="b.zarr", theta=1.0)
 
 
+@pytest.mark.thorough
 def test_a_scene_without_a_store_needs_no_zarr():
     scene = {key: value for key, value in SCENE.items() if key != "results"}
     code = f"""import sys

@@ -481,6 +481,7 @@ def test_a_function_knows_its_period(name):
 HALF_WAY = ([0.0, 0.06, 0.06, 0.1], [0.0, 0.0, -9e3, -9e3], [0.0] * 4)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "load",
     [

@@ -235,7 +235,7 @@ def test_fmpy_finds_no_problem(made):
     validate(made("both ways"))
 
 
-@pytest.mark.sampled
+@pytest.mark.thorough
 def test_sanitizers_find_nothing_in_a_thousand_random_presses(made, tmp_path):
     assert 100 < started(made("both ways"), tmp_path) < 1000
 

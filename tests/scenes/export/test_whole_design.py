@@ -89,6 +89,7 @@ def test_arrays_and_numbers_of_evaluate_do(branch, way):
 # ---- what they take, and the dimensions that they have ---------------------------------------------
 
 
+@pytest.mark.thorough
 def test_their_functions_take_lengths_alone(tmp_path):
     written = scene(["V_C", "stroke", "margin"], theta=[0.0, 1.0], AB=1.0)
     given = {"ec": 0.1, "BC": 3.0}
