@@ -222,7 +222,7 @@ def test_a_limit_angle_and_when_it_is_reached(omega_start, mu):
         assert result[f"work_wrt_{p}"] == pytest.approx(expected["work"], rel=1e-4, abs=1e-5)
 
 
-@pytest.mark.sampled
+@pytest.mark.thorough
 def test_random_machines_up_to_a_limit_angle():
     designs, wrt = random_designs(cases(60, 200, 1_000), 8), ["AB", "ec", "m_slider", "theta0", "torque"]
     call = {"t_end": 0.8, "times": [0.0]}
