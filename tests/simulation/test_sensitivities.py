@@ -224,12 +224,13 @@ def test_a_limit_angle_and_when_it_is_reached(omega_start, mu):
 
 @pytest.mark.thorough
 def test_random_machines_up_to_a_limit_angle():
-    designs, wrt = random_designs(cases(60, 200, 1_000), 8), ["AB", "ec", "m_slider", "theta0", "torque"]
+    number = cases(60, 200, 1_000)
+    designs, wrt = random_designs(number, 8), ["AB", "ec", "m_slider", "theta0", "torque"]
     call = {"t_end": 0.8, "times": [0.0]}
     limit = np.flatnonzero(dx.simulate(**call, **designs)["status"] == 2)
     assert limit.size >= 5
     for row in limit[: cases(5, 200, 1_000)]:
-        one = {name: float(np.broadcast_to(v, limit[-1] + 1)[row]) for name, v in designs.items()}
+        one = {name: float(np.broadcast_to(v, number)[row]) for name, v in designs.items()}
         result = dx.simulate(**call, wrt=wrt, **one)
         for p in wrt:
             truth = differences(call, one, p)
