@@ -91,6 +91,8 @@ ELEMENTS = {  # a table -> Y, V_C, and the force of a spring or a damper there, 
     "{ spring = 4000, free = 0.12 }": (0.15, 3.0, -120.0),
     '{ damper = "200 N s/m" }': (0.1, 3.0, -600.0),
     "{ damper = 200, quadratic = 0.8 }": (0.1, -3.0, 607.2),
+    "{ damper = 200, scale = -1.5 }": (0.1, -3.0, -900.0),
+    "{ over_V = [[-2, 900], [2, -400]], scale = 0.5 }": (0.1, 2.0, -200.0),
     "{ over_V = [[-2, 900], [0, 0], [2, -400]] }": (0.1, 1.0, -200.0),
     '{ over_V = [-2, 0, 2], values = [0.9, 0, -0.4], value = "kN" }': (0.1, -1.0, 450.0),
 }
@@ -119,14 +121,11 @@ def test_plain_numbers_of_a_spring_are_in_the_units_of_the_scene():
 
 def test_a_list_of_loads_is_their_sum(tmp_path):
     press = dx.Machine(ec=10, AB=40, BC=64, omega0=20, units="mm, deg, rad/s, kN")
-    load = (
-        press.spring(0.004, 120)
-        + press.damper("200 N s/m")
-        + press.over_Y([30, 100], [-0.9, 0], [0, 0])
-        - 0.04
-    )
-    path = press.replace(F_Y=load).to_scene(tmp_path / "press.toml", "T_in")
-    assert dx.Machine.read(path)["F_Y"] == load
+    spring, damper = press.spring(0.004, 120), press.damper("200 N s/m")
+    load = spring + damper + press.over_Y([30, 100], [-0.9, 0], [0, 0]) - 0.04
+    for k, each in enumerate((load, 2.5 * spring, load - spring - 2 * damper)):
+        path = press.replace(F_Y=each).to_scene(tmp_path / f"press_{k}.toml", "T_in")
+        assert dx.Machine.read(path)["F_Y"] == each
     scene = {"outputs": ["T_in"], "units": "mm, deg", "mechanism": {"ec": 10, "AB": 40, "BC": 64}}
     scene |= {"motion": {"theta": [0, 90], "omega0": 20}}
     parts = [{"spring": 4, "free": 120}, {"damper": "200 N s/m"}, -40]
@@ -137,11 +136,12 @@ def test_a_list_of_loads_is_their_sum(tmp_path):
         ([{"spring": 4}, 5], "loads.F_Y #1.free is missing"),
         ([{"damper": 1}, {"start": 0, "stop": 1, "num": 2}], "loads.F_Y #2: a sum is of loads and numbers"),
         ([{"damper": 1}, [3]], "loads.F_Y #2"),
+        ([{"damper": 1, "scale": np.inf}], "loads.F_Y #1.scale = inf: expected a finite number"),
     ):
         with pytest.raises(SceneError, match=message):
             dx.scene({**scene, "loads": {"F_Y": wrong}})
-    with pytest.raises(TypeError, match=r"2 spring: .* is not data"):
-        press.replace(F_Y=2 * press.spring(0.004, 120)).to_scene(tmp_path / "twice.toml", "T_in")
+    with pytest.raises(TypeError, match="is not data"):
+        press.replace(F_Y=spring + press.over_Y(np.sin)).to_scene(tmp_path / "sine.toml", "T_in")
 
 
 REFUSED = {

@@ -34,8 +34,9 @@ def load_table(name: str, load: Load, units: UnitSystem, path: Path | None, text
     Points are in the units of the scene where these stand for the same doubles, else in SI units with all
     their digits, so that the load that is read equals this one; many are the text of a file beside the path.
     """
-    if isinstance(load, SumOfLoads) and all(factor == 1.0 for factor, _ in load.terms):
-        parts: list[Any] = [load_table(name, part, units, path, texts) for part in load.members]
+    if isinstance(load, SumOfLoads):
+        terms = [(factor, load_table(name, part, units, path, texts)) for factor, part in load.terms]
+        parts: list[Any] = [part if factor == 1.0 else {**part, "scale": factor} for factor, part in terms]
         return [*parts, *([f"{load.constant!r} N"] if load.constant else [])]
     if type(load) in ELEMENTS:
         rows = zip(ELEMENTS[type(load)].items(), load.numbers.values(), strict=True)

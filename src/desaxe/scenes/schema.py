@@ -88,7 +88,8 @@ VARYING = _table(
     **SPAN, over_theta=POINTS, over_Y=POINTS, over_stroke=POINTS, over_V=POINTS, spring=NUMBER, damper=NUMBER,
     dead_centre=CENTRE, values=COLUMN, outward=COLUMN, inward=COLUMN, period=NUMBER, theta=UNIT, Y=UNIT,
     distance=UNIT, value=UNIT, V_C=UNIT, bore=NUMBER, area=NUMBER, ambient=NUMBER, free=NUMBER,
-    quadratic=NUMBER, kind=_one_of("cubic", "linear", "step", "smooth"),
+    quadratic=NUMBER, scale=_rule("a number by which the load is multiplied", "number"),
+    kind=_one_of("cubic", "linear", "step", "smooth"),
 )  # fmt: skip
 TERM = _rule(f"{_NUMBER}, or in a sum a load", "number", "string", VARYING)
 FORCE = _rule(_FORCE, "number", "string", _list_of(TERM), VARYING)

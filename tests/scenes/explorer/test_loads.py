@@ -87,7 +87,7 @@ ELEMENTS = {
     "spring": SPRING,
     "damper": DAMPER,
     "over_V": dx.over_V([-3.0, 0.0, 5.0], [40.0, 0.0, -90.0]),
-    "sum": SPRING + DAMPER + dx.over_theta(ANGLES, FORCES) - 20.0,
+    "sum": 2.5 * SPRING - DAMPER + dx.over_theta(ANGLES, FORCES) - 20.0,
 }
 
 

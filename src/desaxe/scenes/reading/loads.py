@@ -1,6 +1,7 @@
 """Loads and motors of a scene: from a file, from points, or of a few numbers."""
 
 from collections.abc import Mapping, Sequence
+from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
@@ -81,6 +82,8 @@ def force_of(key: str, name: str, written: Any, folder: Path | None, units: Unit
         if isinstance(written, Mapping):
             _refuse(key, written, RANGE, lambda wrong: f"it belongs to {_kinds_with(wrong)}")
         return values_of(key, name, written, units)
+    written = dict(written)
+    scale = written.pop("scale", 1.0)
     if kind in NEEDED and NEEDED[kind][0] not in written:
         option, meaning = NEEDED[kind]
         raise SceneError(f"{key}.{option} is missing: {meaning}")
@@ -94,7 +97,9 @@ def force_of(key: str, name: str, written: Any, folder: Path | None, units: Unit
             f"{key}.{kind} = {shown(written[kind])}: its plain numbers would be in SI units, but those of "
             f"the scene are not: name the units of its columns in its heading, or by {beside} beside the file"
         )
-    return cast(Value, _settled(key, name, load, units))
+    if not isfinite(scale):
+        raise SceneError(f"{key}.scale = {scale}: expected a finite number")
+    return cast(Value, _settled(key, name, load if scale == 1.0 else load * scale, units))
 
 
 def _sum(key: str, parts: Sequence[Any], units: UnitSystem) -> Value:

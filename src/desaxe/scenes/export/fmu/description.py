@@ -5,7 +5,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from ....units.parse import coherent_unit
-from .programs import TORQUE, Programs
+from .programs import THROUGH, TORQUE, Programs
 from .variables import NOMINAL, Variable, Variables
 
 Dependencies = Mapping[str, tuple[str, ...]]  # of each unknown, by name
@@ -89,8 +89,8 @@ def _dependencies(table: Variables, made: Programs) -> Dependencies:
     moves = bool(table.states)
     by_row: dict[str, set[str]] = {}
     for row, by in made.entries:
-        through = made.loads[by].parameters if by in made.loads else ()
-        by_row.setdefault(row, set()).update((by, *through))
+        through = {p for table in made.tables.get(by, {}).values() for p in table.parameters}
+        by_row.setdefault(row, set()).update({by}, through & {*THROUGH})
     # The acceleration depends on what T_in does; where friction acts, on the way of turning, too.
     alpha = (by_row.get(TORQUE, set()) | {"torque"}) - {"alpha"} if moves else set()
     result: dict[str, set[str]] = {} if moves else {"theta": {"theta0", "omega", "time"}}

@@ -142,32 +142,25 @@ FMI2_Export fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference pla
 
 FMI2_Export fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference places[], size_t n,
                                       fmi2Integer values[]) {
-  for (size_t k = 0; k < n; k++) {
-    double value;
-    if (fmi2GetReal(c, &places[k], 1, &value) != fmi2OK) {
-      return fmi2Error;
-    }
+  fmi2Status done = fmi2OK;
+  for (size_t k = 0; k < n && done == fmi2OK; k++) {
+    double value = 0.0;
+    done = fmi2GetReal(c, &places[k], 1, &value);
     values[k] = (fmi2Integer)value;
   }
-  return fmi2OK;
+  return done;
 }
 
-#define SET_UNUSED(NAME, TYPE)                                                                                \
-  FMI2_Export fmi2Status fmi2Set##NAME(fmi2Component c, const fmi2ValueReference places[], size_t n,          \
-                                       const TYPE values[]) {                                                 \
-    (void)places, (void)values;                                                                               \
-    return n == 0 ? fmi2OK : refuse(c, "fmi2Set" #NAME ": there is no variable of this type to set");         \
+#define UNUSED(NAME, TYPE)                                                                                     \
+  FMI2_Export fmi2Status NAME(fmi2Component c, const fmi2ValueReference places[], size_t n, TYPE values[]) {   \
+    (void)places, (void)values;                                                                                \
+    return n == 0 ? fmi2OK : refuse(c, #NAME ": there is no variable of this type");                           \
   }
-#define UNUSED(NAME, TYPE)                                                                                    \
-  FMI2_Export fmi2Status fmi2Get##NAME(fmi2Component c, const fmi2ValueReference places[], size_t n,          \
-                                       TYPE values[]) {                                                       \
-    (void)places, (void)values;                                                                               \
-    return n == 0 ? fmi2OK : refuse(c, "fmi2Get" #NAME ": there is no variable of this type");                \
-  }                                                                                                           \
-  SET_UNUSED(NAME, TYPE)
-SET_UNUSED(Integer, fmi2Integer)
-UNUSED(Boolean, fmi2Boolean)
-UNUSED(String, fmi2String)
+UNUSED(fmi2SetInteger, const fmi2Integer)
+UNUSED(fmi2GetBoolean, fmi2Boolean)
+UNUSED(fmi2SetBoolean, const fmi2Boolean)
+UNUSED(fmi2GetString, fmi2String)
+UNUSED(fmi2SetString, const fmi2String)
 
 /* By inputs, states (parameters before initialisation mode is left, as the table of knowns has it) and time. */
 FMI2_Export fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference of[], size_t n_of,
@@ -289,21 +282,22 @@ FMI2_Export fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
   return fmi2OK;
 }
 
-FMI2_Export fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real states[], size_t n) {
-  Values *x = values_of(c);
-  if (n == 2 && HAS_STATES) {
-    memcpy(&x->v[THETA], states, 2 * sizeof *states);
-    x->known = 0;
+/* Copy the states or their derivatives. */
+static fmi2Status copied(double to[], const double from[], size_t n) {
+  const size_t most = HAS_STATES ? 2 : 0;
+  for (size_t k = 0; k < n && k < most; k++) {
+    to[k] = from[k];
   }
-  return n == (HAS_STATES ? 2 : 0) ? fmi2OK : fmi2Error;
+  return n == most ? fmi2OK : fmi2Error;
+}
+
+FMI2_Export fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real states[], size_t n) {
+  values_of(c)->known = 0;
+  return copied(&values_of(c)->v[THETA], states, n);
 }
 
 FMI2_Export fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real states[], size_t n) {
-  const Values *x = updated(c);
-  if (n == 2 && HAS_STATES) {
-    memcpy(states, &x->v[THETA], 2 * sizeof *states);
-  }
-  return n == (HAS_STATES ? 2 : 0) ? fmi2OK : fmi2Error;
+  return copied(states, &updated(c)->v[THETA], n);
 }
 
 FMI2_Export fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real rates[], size_t n) {
@@ -314,10 +308,7 @@ FMI2_Export fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real rates[], siz
     snprintf(text, sizeof text, "no acceleration at t = %.9g, theta = %.9g: %s", x->v[0], x->v[THETA], REASONS[status]);
     return refuse(c, text);
   }
-  if (n == 2 && HAS_STATES) {
-    memcpy(rates, &x->v[DER_THETA], 2 * sizeof *rates);
-  }
-  return n == (HAS_STATES ? 2 : 0) ? fmi2OK : fmi2Error;
+  return copied(rates, &x->v[DER_THETA], n);
 }
 
 FMI2_Export fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
@@ -338,17 +329,14 @@ FMI2_Export fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Re
 
 /* ---- co-simulation ---- */
 
-FMI2_Export fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference places[], size_t n,
-                                                   const fmi2Integer orders[], const fmi2Real values[]) {
-  (void)places, (void)n, (void)orders, (void)values;
-  return refuse(c, "fmi2SetRealInputDerivatives: inputs are held during a step");
-}
-
-FMI2_Export fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference places[], size_t n,
-                                                    const fmi2Integer orders[], fmi2Real values[]) {
-  (void)places, (void)n, (void)orders, (void)values;
-  return refuse(c, "fmi2GetRealOutputDerivatives: not provided");
-}
+#define NOT_PROVIDED(NAME, TYPE)                                                                               \
+  FMI2_Export fmi2Status NAME(fmi2Component c, const fmi2ValueReference places[], size_t n,                    \
+                              const fmi2Integer orders[], TYPE values[]) {                                     \
+    (void)places, (void)n, (void)orders, (void)values;                                                         \
+    return refuse(c, #NAME ": inputs are held during a step");                                                 \
+  }
+NOT_PROVIDED(fmi2SetRealInputDerivatives, const fmi2Real)
+NOT_PROVIDED(fmi2GetRealOutputDerivatives, fmi2Real)
 
 FMI2_Export fmi2Status fmi2DoStep(fmi2Component c, fmi2Real start, fmi2Real h, fmi2Boolean keeps) {
   const Values *x = values_of(c);

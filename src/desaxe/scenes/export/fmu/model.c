@@ -32,32 +32,49 @@ static void start_values(Values *x) {
 
 /* ---- loads from tables, held between two kinks ---- */
 
-/* Add the loads to the forces; what the tables are looked up by, and their slopes, are in `looked_up`. */
-static void add_loads(double v[], double looked_up[][N_LOOKED_UP]) {
-  (void)eval_loads(v, looked_up[0]);
+#define WIDTH (1 + N_THROUGH)
+
+/* What a table is looked up by, x[0], and its derivatives. */
+static void argument_of(const Load *load, const double v[], const double columns[], double x[WIDTH]) {
+  const double *at = &columns[load->column], *origin = load->centre != NULL ? &columns[load->origin] : NULL;
+  for (int j = 0; j < WIDTH; j++) { /* from a dead centre a distance */
+    x[j] = origin == NULL ? at[j] : at[0] < origin[0] ? origin[j] - at[j] : at[j] - origin[j];
+  }
+  x[0] -= v[load->held];
+}
+
+/* Add the loads to the forces; `by` becomes what each table's depends on. */
+static void add_loads(double v[], double by[][N_THROUGH]) {
+  double columns[N_COLUMNS], x[WIDTH];
+  (void)eval_columns(v, columns);
   for (int k = 0; k < N_LOADS; k++) {
-    const double value = looked_up[k][VALUE];
-    v[LOADS[k].force] += value == value ? value : 0.0;
+    const Load *load = &LOADS[k];
+    const double *held = &v[load->held];
+    argument_of(load, v, columns, x);
+    const double piece = lookup_piece(x[0], load->knots, load->n, 1.0), low = piece > held[1] ? piece : held[1];
+    const double at = (low < held[2] ? low : held[2]) + held[3];
+    const double value = lookup(x[0], load->knots, load->rows, load->n, at);
+    const double slope = lookup_slope(x[0], load->knots, load->rows, load->n, at);
+    v[load->force] += value == value ? value : 0.0;
+    for (int j = 0; j < N_THROUGH; j++) {
+      by[k][j] = slope * x[1 + j];
+    }
   }
 }
 
 /* Hold each load to the pieces ahead of the angle, for a crank that turns one way. */
 static void hold_loads(double v[], double way) {
-  double at[N_ALL], looked_up[N_LOADS + 1][N_LOOKED_UP];
+  double at[N_ALL], columns[N_COLUMNS], x[WIDTH];
   memcpy(at, v, sizeof at);
   at[THETA] += HAS_STATES ? 1e-9 * way : 0.0;
+  (void)eval_columns(at, columns);
   for (int k = 0; k < N_LOADS; k++) {
     const Load *load = &LOADS[k];
-    const double period = load->period;
-    v[load->held] = period > 0.0 ? period * floor((at[THETA] - load->knots[0]) / period) : 0.0;
-    at[load->held] = v[load->held];
-  }
-  (void)eval_loads(at, looked_up[0]);
-  for (int k = 0; k < N_LOADS; k++) {
-    const Load *load = &LOADS[k];
-    const double ahead = way < 0.0 ? -looked_up[k][RISES] : looked_up[k][RISES];
-    double *held = &v[load->held], first = load->period > 0.0 ? 1.0 : 0.0, last = load->n;
-    const double piece = looked_up[k][PIECE] < first ? first : looked_up[k][PIECE];
+    const double period = load->period, ahead = way < 0.0 ? -columns[RISES] : columns[RISES];
+    double *held = &v[load->held], first = period > 0.0 ? 1.0 : 0.0, last = load->n;
+    held[0] = period > 0.0 ? period * floor((at[THETA] - load->knots[0]) / period) : 0.0;
+    argument_of(load, v, columns, x);
+    const double here = lookup_piece(x[0], load->knots, load->n, 1.0), piece = here < first ? first : here;
     for (int j = 0; j < load->n_kinks; j++) {
       const double knot = load->kinks[j];
       first = knot < piece && knot + 1.0 > first ? knot + 1.0 : first;
@@ -71,28 +88,29 @@ static void hold_loads(double v[], double way) {
 
 /* Event indicators of the loads: distances to the kinks around, and the slider's way. */
 static void load_indicators(const Values *x, const double state[2], double z[]) {
-  double v[N_ALL], looked_up[N_LOADS + 1][N_LOOKED_UP];
+  double v[N_ALL], columns[N_COLUMNS], at[WIDTH];
   memcpy(v, x->v, sizeof v);
   v[THETA] = state[0];
-  (void)eval_loads(v, looked_up[0]);
+  (void)eval_columns(v, columns);
   for (int k = 0; k < N_LOADS; k++, z += 3) {
     const Load *load = &LOADS[k];
-    const double *held = &v[load->held], at = looked_up[k][AT], inward = held[3] > 0.0 ? -1.0 : 1.0;
+    const double *held = &v[load->held], inward = held[3] > 0.0 ? -1.0 : 1.0;
     const int first = (int)held[1], last = (int)held[2];
     const double end = load->period > 0.0 ? load->knots[0] + load->period : (double)INFINITY;
     const double right = last < load->n ? load->knots[last] : end;
-    z[0] = first > 0 ? at - load->knots[first - 1] : 1.0;
-    z[1] = right < (double)INFINITY ? right - at : 1.0;
-    z[2] = load->two_ways ? inward * (x->way < 0.0 ? -1.0 : 1.0) * looked_up[k][RISES] : 1.0;
+    argument_of(load, v, columns, at);
+    z[0] = first > 0 ? at[0] - load->knots[first - 1] : 1.0;
+    z[1] = right < (double)INFINITY ? right - at[0] : 1.0;
+    z[2] = load->two_ways ? inward * (x->way < 0.0 ? -1.0 : 1.0) * columns[RISES] : 1.0;
   }
 }
 
 /* The dead centre that a load needs and that the lengths do not have; NULL where there is none such. */
 static const char *missing_dead_centre(const double v[]) {
-  double looked_up[N_LOADS + 1][N_LOOKED_UP];
-  (void)eval_loads(v, looked_up[0]);
+  double columns[N_COLUMNS];
+  (void)eval_columns(v, columns);
   for (int k = 0; k < N_LOADS; k++) {
-    if (LOADS[k].centre != NULL && !(looked_up[k][AT] < (double)INFINITY)) {
+    if (LOADS[k].centre != NULL && !(columns[LOADS[k].origin] < (double)INFINITY)) {
       return LOADS[k].centre;
     }
   }
@@ -103,13 +121,13 @@ static const char *missing_dead_centre(const double v[]) {
 
 /* The acceleration, out[0], while the crank turns one way; returns its status. */
 static int motion_at(double torque, double theta, double omega, double way, const double in[], double out[]) {
-  double v[N_ALL], looked_up[N_LOADS + 1][N_LOOKED_UP];
+  double v[N_ALL], by[N_LOADS + 1][N_THROUGH];
   const double first = in[FIRST_ANGLE] + EDGE, last = in[LAST_ANGLE] - EDGE;
   memcpy(v, in, sizeof v);
   v[THETA] = theta < first ? first : (theta > last ? last : theta); /* trial steps go beyond */
   v[OMEGA] = omega;
   v[TORQUE] = torque;
-  add_loads(v, looked_up);
+  add_loads(v, by);
   return eval_motion(v, way, out);
 }
 
@@ -179,7 +197,7 @@ static void follow_from_here(Values *x) {
 
 /* Everything that follows from states, inputs and parameters; returns the status. */
 static int update(Values *x) {
-  double alpha = 0.0, v[N_ALL], out[N_OUTPUTS + 1], looked_up[N_LOADS + 1][N_LOOKED_UP];
+  double alpha = 0.0, v[N_ALL], out[N_OUTPUTS + 1], by[N_LOADS + 1][N_THROUGH];
   int status = 0;
   if (x->mode <= INITIALISING) {
     x->v[THETA] = x->v[THETA0];
@@ -191,15 +209,13 @@ static int update(Values *x) {
     x->v[THETA] = x->co_simulation ? x->v[THETA] : followed(x);
     x->way = way_of(x);
   }
-  if (HAS_STATES && x->way != 0.0) {
-    status = alpha_of(x, &x->v[THETA], x->way, &alpha);
-  }
   if (HAS_STATES) {
+    status = x->way < 0.0 || x->way > 0.0 ? alpha_of(x, &x->v[THETA], x->way, &alpha) : 0;
     x->v[DER_THETA] = x->v[OMEGA];
     x->v[DER_OMEGA] = alpha;
   }
   memcpy(v, x->v, sizeof v);
-  add_loads(v, looked_up);
+  add_loads(v, by);
   const int other = eval_outputs(v, alpha, out);
   for (int k = 0; k < N_OUTPUTS; k++) {
     x->v[OUTPUTS[k]] = out[k];
@@ -298,8 +314,8 @@ static void meet_events(Model *m) {
 
 static void differentiate(const Values *x, double seed[N_VALUES]) {
   double slopes[N_SLOPES + 1], rows[N_OUTPUTS + 1] = {0.0}, by_alpha[N_OUTPUTS + 1] = {0.0}, alpha = 0.0;
-  double v[N_ALL], looked_up[N_LOADS + 1][N_LOOKED_UP];
-  const int through[4] = {THETA, EC, LENGTH_AB, LENGTH_BC};
+  double v[N_ALL], by[N_LOADS + 1][N_THROUGH];
+  const int through[N_THROUGH] = {THETA, OMEGA, EC, LENGTH_AB, LENGTH_BC};
   if (x->mode <= INITIALISING && HAS_STATES) {
     seed[THETA] = seed[THETA0];
     seed[OMEGA] = seed[OMEGA_START];
@@ -310,10 +326,10 @@ static void differentiate(const Values *x, double seed[N_VALUES]) {
     }
   }
   memcpy(v, x->v, sizeof v);
-  add_loads(v, looked_up);
+  add_loads(v, by);
   for (int k = 0; k < N_LOADS; k++) {
-    for (int j = 0; j < 4; j++) {
-      seed[LOADS[k].force] += seed[through[j]] != 0.0 ? looked_up[k][SLOPE + j] * seed[through[j]] : 0.0;
+    for (int j = 0; j < N_THROUGH; j++) {
+      seed[LOADS[k].force] += seed[through[j]] != 0.0 ? by[k][j] * seed[through[j]] : 0.0;
     }
   }
   (void)eval_slopes(v, HAS_STATES ? x->v[DER_OMEGA] : 0.0, slopes);

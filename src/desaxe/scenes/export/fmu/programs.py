@@ -1,4 +1,4 @@
-"""The Programs of an FMU: acceleration, outputs, their partial derivatives, limit angles, loads."""
+"""The Programs of an FMU: acceleration, outputs, partial derivatives, limit angles, columns of loads."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -7,10 +7,11 @@ from ....compiler.passes.differentiate import Chain
 from ....compiler.passes.guard import guard_inputs
 from ....compiler.passes.pipeline import optimise
 from ....compiler.passes.slicing import keep_outputs
-from ....compiler.program import Argument, Line, Program, TableName
-from ....loads.load import Load, TableOverTheta
-from ....loads.stroke import OverStroke
-from ....mechanism.catalogue import law_name, quantities
+from ....compiler.program import Argument, Line, Program
+from ....loads.lines import tables_of
+from ....loads.load import Load
+from ....loads.resolve import split
+from ....mechanism.catalogue import has, law_name, quantities
 from ....mechanism.closed.functions import closed_form
 from ....mechanism.closed.limits import ANGLES, LIMITS
 from ....mechanism.inputs import LEAST
@@ -19,13 +20,15 @@ from ....runtime.request import request
 from ....runtime.specialise import specialise
 from ...content import Content
 from ..motion import motion
-from .variables import FORCES, Variables, tables
+from .variables import FORCES, Variables
 
 TORQUE = "T_in"  # the row whose derivatives say how the acceleration depends on everything
-THROUGH = ("theta", *LENGTHS)  # what the forces of loads depend on
-# What the loads' Program has of each load, in this order; what it is held by is an input.
-LOOKED_UP = ("VALUE", "SLOPE", *(f"SLOPE_{k}" for k in range(1, len(THROUGH))), "AT", "PIECE", "RISES")
-HELD = ("shift", "first", "last", "side")  # whole periods, pieces, those of the way back
+THROUGH = (
+    "theta",
+    "omega",
+    *LENGTHS,
+)  # what columns of the motion depend on
+HELD = ("shift", "first", "last", "side")  # of a table: whole periods, pieces, those of the way back
 
 
 class Programs(NamedTuple):
@@ -37,8 +40,9 @@ class Programs(NamedTuple):
     slopes: Program
     entries: tuple[tuple[str, str], ...]
     limits: Program
-    looked_up: Program
-    loads: Mapping[str, Load]  # those that vary with the motion
+    columns: Program  # dY/dtheta; then each of `used`, and its derivatives by THROUGH
+    used: tuple[str, ...]
+    tables: Mapping[str, Mapping[str, Load]]  # force -> the tables that are added to it
 
 
 def programs(content: Content, table: Variables) -> Programs:
@@ -50,7 +54,8 @@ def programs(content: Content, table: Variables) -> Programs:
     outputs = _program(names, knowns, branch)
     rows = dict.fromkeys((*(n for n in table.outputs if n != "status"), *([TORQUE] if moves else [])))
     slopes, entries = _slopes(tuple(rows), knowns, branch)
-    loads = tables(content.inputs)
+    loads = {force: tables_of(force, load) for force, load in split(content.inputs)[1].items()}
+    used = dict.fromkeys(column for parts in loads.values() for one in parts.values() for column in one.needs)
     return Programs(
         motion(dict.fromkeys((*parameters, *FORCES), (0.0, 1.0)), branch) if moves else None,
         guard_inputs(outputs, [n for n in ("theta", "omega", *FORCES) if n in outputs.inputs], LEAST, {}),
@@ -58,7 +63,8 @@ def programs(content: Content, table: Variables) -> Programs:
         slopes,
         entries,
         closed_form(LIMITS, (*ANGLES, "status")).program,
-        _looked_up(loads, branch),
+        _columns(tuple(used), branch),
+        tuple(used),
         loads,
     )
 
@@ -102,58 +108,14 @@ def _slopes(
     return optimise(whole), tuple(results)
 
 
-def _looked_up(loads: Mapping[str, Load], branch: int) -> Program:
-    """The Program that has LOOKED_UP of each load: force, slopes, where it is looked up, piece, dY/dtheta.
-
-    Pieces before `first` and after `last` are those, whose cubics go on.
-    """
-    centres = dict.fromkeys(load.centre for load in loads.values() if isinstance(load, OverStroke))
-    names = [
-        *("Y", "Y_wrt_theta", *(sensitivity("Y", p) for p in LENGTHS)),
-        *(name for centre in centres for name in (centre, *(sensitivity(centre, p) for p in LENGTHS))),
-    ]
+def _columns(used: Sequence[str], branch: int) -> Program:
+    """The columns of the motion that tables are over, each with its derivatives; ahead of them dY/dtheta."""
+    rows = ["Y_wrt_theta", *(name for c in used for name in (c, *(sensitivity(c, p) for p in THROUGH)))]
+    names = tuple(dict.fromkeys(name for name in rows if has(name, True)))
     base = _program(names, (), branch)
-    writer = _LoadWriter(dict(zip(names, base.outputs, strict=True)))
-    outputs = [output for force, load in loads.items() for output in writer.load(force, load)]
-    inputs = (*base.inputs, *(f"{force}_{held}" for force in loads for held in HELD))
-    return optimise(Program(inputs, (*base.lines, *writer.lines), tuple(outputs), base.notes))
-
-
-class _LoadWriter:
-    """Appends the lines of loads behind those of the slider's position and of dead centres."""
-
-    def __init__(self, names: Mapping[str, str]) -> None:
-        self.names = names
-        self.lines: list[Line] = []
-
-    def new(self, op: str, *args: Argument, type: str = "f64") -> str:
-        """A line."""
-        self.lines.append(Line(f"_load{len(self.lines)}", op, args, type))
-        return self.lines[-1].name
-
-    def load(self, force: str, load: Load) -> list[str]:
-        """The lines of a load; its outputs."""
-        shift, first, last, side = (f"{force}_{held}" for held in HELD)
-        at, along = self._along(load, shift)
-        table = TableName(force)
-        piece = self.new("lookup_piece", at, table, 1.0)
-        low = self.new("select", self.new("lt", piece, first, type="bool"), first, piece)
-        inside = self.new("select", self.new("lt", last, low, type="bool"), last, low)
-        looked = (at, table, self.new("add", inside, side))
-        slope = self.new("lookup_slope", *looked)
-        slopes = [self.new("mul", slope, along.get(p, 0.0)) for p in THROUGH]
-        rises = self.new("copy", self.names["Y_wrt_theta"])
-        return [self.new("lookup", *looked), *slopes, self.new("copy", at), piece, rises]
-
-    def _along(self, load: Load, shift: str) -> tuple[str, dict[str, Argument]]:
-        """The argument of a table, and its derivatives."""
-        if isinstance(load, TableOverTheta):
-            return self.new("sub", "theta", shift), {"theta": 1.0}
-        moved = {p: self.names[sensitivity("Y", p)] for p in THROUGH}
-        if not isinstance(load, OverStroke):
-            return self.names["Y"], dict(moved)
-        away = self.new("sub", self.names[load.centre], self.names["Y"])
-        sign = self.new("copysign", 1.0, away)
-        outer = {p: self.names[sensitivity(load.centre, p)] for p in LENGTHS}
-        change = {p: self.new("sub", outer.get(p, 0.0), moved[p]) for p in THROUGH}
-        return self.new("abs", away), {p: self.new("mul", sign, value) for p, value in change.items()}
+    known: dict[str, Argument] = dict(zip(names, base.outputs, strict=True))
+    known |= {"theta": "theta", sensitivity("theta", "theta"): 1.0}
+    lines = [Line(f"_column{k}", "copy", (known.get(name, 0.0),)) for k, name in enumerate(rows)]
+    inputs = tuple(dict.fromkeys((*base.inputs, *(["theta"] if "theta" in used else []))))
+    outputs = tuple(line.name for line in lines)
+    return optimise(Program(inputs, (*base.lines, *lines), outputs, base.notes))

@@ -4,17 +4,16 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from ....compiler.languages.c.functions import called_through
 from ....compiler.languages.c.helpers import HELPERS, PRAGMAS
-from ....compiler.languages.c.language import quoted, sine_and_cosine, tables_text
+from ....compiler.languages.c.language import quoted, sine_and_cosine
 from ....compiler.languages.c.steps import RUNGE_KUTTA
-from ....compiler.languages.shared import comment, with_helpers
+from ....compiler.languages.shared import arrays_of, comment, with_helpers
 from ....compiler.program import Program
 from ....loads.load import Load, OverY, TableOverTheta
-from ....loads.stroke import OverStroke
 from ....mechanism.constants import constants
 from ....mechanism.inputs import INPUTS
 from ....mechanism.status import PointStatus
 from ....support.template import file_text
-from .programs import HELD, LOOKED_UP, TORQUE, Programs
+from .programs import HELD, THROUGH, TORQUE, Programs
 from .variables import NOMINAL, Variables
 
 EDGE = 1e-9  # rad: so near to a limit angle a motion ends
@@ -27,12 +26,14 @@ typedef struct {
   double least;
   const char *name, *limit;
 } Check;
-/* A table of a force; period of an angle, or 0. Knots at which value or slope jumps are kinks. */
+/* A table added to a force; period of an angle, or 0. Knots at which value or slope jumps are kinks. */
 typedef struct {
-  int force, held, two_ways, n, n_kinks; /* where the force, and what is held of the load, stand in v */
+  int force, held; /* where the force, and what is held of the table, stand in v */
+  int column, origin; /* where its argument, and the dead centre as its origin, stand among the columns */
+  int two_ways, n, n_kinks;
   double period;
   const char *centre; /* NULL where no dead centre is needed */
-  const double *knots;
+  const double *knots, *rows;
   const int *kinks;
 } Load;"""
 
@@ -46,9 +47,8 @@ def source_text(head: Sequence[str], table: Variables, made: Programs, token: st
         *(f"#include <{name}.h>" for name in ("math", "stdint", "stdio", "stdlib", "string")),
         '#include "fmi2Functions.h"\n',
         PRAGMAS,
-        *with_helpers("\n".join([sine_and_cosine(constants()), *functions]), HELPERS),
+        *with_helpers("\n".join([sine_and_cosine(constants()), *functions, model]), HELPERS),
         sine_and_cosine(constants()),
-        *tables_text({force: load.arrays() for force, load in made.loads.items()}),
         *functions,
         "\n".join([*_sizes(table, made, token), STRUCTS, *_tables(table, made), *_loads(table, made)]) + "\n",
         model,
@@ -57,21 +57,26 @@ def source_text(head: Sequence[str], table: Variables, made: Programs, token: st
     return "\n".join(parts)
 
 
-def _places(table: Variables, loads: Iterable[str]) -> dict[str, int]:
-    """The places in v: of variables, of two limit angles, of what loads are held by."""
-    more = ("FIRST_ANGLE", "LAST_ANGLE", *(f"{force}_{held}" for force in loads for held in HELD))
+def _parts(made: Programs) -> dict[str, Load]:
+    """The tables of all forces by name."""
+    return {name: table for parts in made.tables.values() for name, table in parts.items()}
+
+
+def _places(table: Variables, made: Programs) -> dict[str, int]:
+    """The indices in v: of variables, of two limit angles, of what tables are held by."""
+    more = ("FIRST_ANGLE", "LAST_ANGLE", *(f"{name}_{held}" for name in _parts(made) for held in HELD))
     return table.place | {name: len(table.rows) + k for k, name in enumerate(more)}
 
 
 def _functions(table: Variables, made: Programs) -> list[str]:
     """Each Program, and a function that calls it with its places in the array."""
-    place, moves = _places(table, made.loads), made.motion is not None
+    place, moves = _places(table, made), made.motion is not None
     motion = made.motion or Program((), (), (), {})
     return [
         *_function("outputs", made.outputs, place, len(made.outputs.outputs), made.status, "alpha"),
         *_function("slopes", made.slopes, place, len(made.slopes.outputs), None, "alpha"),
         *_function("limits", made.limits, place, 4, 4),
-        *_function("loads", made.looked_up, place, len(made.looked_up.outputs), None),
+        *_function("columns", made.columns, place, len(made.columns.outputs), None),
         *_function("motion", motion, place, int(moves), 1 if moves else None, "way"),
     ]
 
@@ -87,7 +92,7 @@ def _function(
 
 def _sizes(table: Variables, made: Programs, token: str) -> list[str]:
     """Sizes and places, as C."""
-    place, moves = _places(table, made.loads), bool(table.states)
+    place, moves = _places(table, made), bool(table.states)
     sizes = {
         "N_VALUES": len(table.rows), "N_ALL": len(place), "N_PARAMETERS": len(table.parameters),
         "N_INPUTS": len(table.inputs), "N_OUTPUTS": len(table.outputs), "N_EVENTS": table.indicators,
@@ -98,9 +103,9 @@ def _sizes(table: Variables, made: Programs, token: str) -> list[str]:
         "DER_OMEGA": place.get("der(omega)", 0), "EC": place["ec"], "LENGTH_AB": place["AB"],
         "LENGTH_BC": place["BC"], "MU": place["mu"], "ALPHA": -1, "AT_REST": 2 * moves,
         "FIRST_ANGLE": place["FIRST_ANGLE"], "LAST_ANGLE": place["LAST_ANGLE"],
-        "TORQUE_ROW": _rows(table)[TORQUE], "N_CHECKS": len(_checks(table)), "N_LOADS": len(made.loads),
-        "TURNING_LOADS": sum(map(_two_ways, made.loads.values())), "N_LOOKED_UP": len(LOOKED_UP),
-        **{name: k for k, name in enumerate(LOOKED_UP) if not name[-1].isdigit()},
+        "TORQUE_ROW": _rows(table)[TORQUE], "N_CHECKS": len(_checks(table)), "N_LOADS": len(_parts(made)),
+        "TURNING_LOADS": sum(map(_two_ways, _parts(made).values())), "N_COLUMNS": len(made.columns.outputs),
+        "N_THROUGH": len(THROUGH), "RISES": 0,
         "EDGE": EDGE, "NOMINAL": NOMINAL, "STANDS": STANDS, "LETS_GO": LETS_GO, "TOKEN": quoted(token),
     }  # fmt: skip
     return [f"#define {name} {size}" for name, size in sizes.items()]
@@ -139,25 +144,33 @@ def _two_ways(load: Load) -> bool:
 
 
 def _loads(table: Variables, made: Programs) -> list[str]:
-    """The loads and their kinks, as C."""
-    rows, lines, place = [], [], _places(table, made.loads)
-    for force, load in made.loads.items():
-        knots, kinks = load.arrays()[0], _kinks(load)
-        period = load.period if isinstance(load, TableOverTheta) else 0.0
-        centre = quoted(load.centre.removeprefix("Y_")) if isinstance(load, OverStroke) else "NULL"
-        lines.append(array_text(f"int {force}_kinks[]", [*map(str, map(knots.index, kinks)), "0"]))
-        sizes = (place[force], place[f"{force}_shift"], int(_two_ways(load)), len(knots), len(kinks), period)
-        rows.append(f"{{{', '.join(map(repr, sizes))}, {centre}, {force}_x, {force}_kinks}}")
-    rows.append("{0, 0, 0, 0, 0, 0.0, NULL, NULL, NULL}")
+    """The tables of loads and their kinks, as C."""
+    rows, place = [], _places(table, made)
+    arrays = arrays_of({name: load.arrays() for name, load in _parts(made).items()})
+    lines = [array_text(f"double {name}[]", map(repr, column)) for name, column in arrays.items()]
+    start = {column: 1 + k * (1 + len(THROUGH)) for k, column in enumerate(made.used)}
+    for force, parts in made.tables.items():
+        for name, load in parts.items():
+            knots, kinks = load.arrays()[0], _kinks(load)
+            lines.append(array_text(f"int {name}_kinks[]", [*map(str, map(knots.index, kinks)), "0"]))
+            sizes = (
+                place[force], place[f"{name}_shift"], start[load.needs[0]], start.get(load.centre, 0),
+                int(_two_ways(load)), len(knots), len(kinks), getattr(load, "period", 0.0),
+            )  # fmt: skip
+            centre = quoted(load.centre.removeprefix("Y_")) if load.centre else "NULL"
+            rows.append(f"{{{', '.join(map(repr, sizes))}, {centre}, {name}_x, {name}_c, {name}_kinks}}")
+    rows.append("{0, 0, 0, 0, 0, 0, 0, 0.0, NULL, NULL, NULL, NULL}")
     return [*lines, array_text("Load LOADS[N_LOADS + 1]", rows)]
 
 
 def _kinks(load: Load) -> list[float]:
-    """The knots at which a load or its slope jumps; that of a dead centre is no event beside its own."""
-    if isinstance(load, TableOverTheta):
-        return sorted(load.table.kinks)
-    assert isinstance(load, OverY)
-    return [x for x in load.positions(smooth=False) if not isinstance(load, OverStroke) or x > 0.0]
+    """The knots at which a load or its slope jumps; that of a dead centre is no event beside its own.
+
+    Over the speed, where only slopes jump, there is none: steps become short there.
+    """
+    if isinstance(load, OverY):
+        return [x for x in load.positions(smooth=False) if not load.centre or x > 0.0]
+    return sorted(load.tables[0].kinks) if isinstance(load, TableOverTheta) else []
 
 
 def array_text(head: str, items: Iterable[str]) -> str:

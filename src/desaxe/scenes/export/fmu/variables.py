@@ -3,14 +3,14 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from ....loads.lines import tables_of
 from ....loads.load import Load
-from ....loads.resolve import plan_of
+from ....loads.resolve import plan_of, split
 from ....mechanism.catalogue import quantity
 from ....mechanism.inputs import INPUTS
 from ....mechanism.names import CENTRES, LENGTHS, MASSES
 from ...content import Content
 from ...schema import SceneError
-from ..loaded import table_of
 
 FIXED = (*LENGTHS, *MASSES, *CENTRES, "g_X", "g_Y", "mu")  # parameters, in their order
 FORCES = ("F_X", "F_Y")
@@ -49,7 +49,7 @@ class Variables(NamedTuple):
 def variables(content: Content, drive: str) -> Variables:
     """The variables of a scene; `drive` is torque or omega."""
     given, moves = content.inputs, drive == "torque"
-    loads = tables(given)
+    loads = split(given)[1]
     check_outputs(content.outputs, loads)
     parameters = [_parameter(n, first(given, n)) for n in FIXED if n not in CENTRES or n in given]
     parameters.append(
@@ -82,13 +82,8 @@ def variables(content: Content, drive: str) -> Variables:
         tuple(row.name for row in inputs),
         ("theta", "omega") if moves else (),
         tuple(row.name for row in outputs),
-        3 + 3 * len(loads) if moves else 2,
+        3 + 3 * sum(len(tables_of(*item)) for item in loads.items()) if moves else 2,
     )
-
-
-def tables(inputs: Mapping[str, Any]) -> dict[str, Load]:
-    """The tables of loads that vary with the motion, by the forces to which they are added."""
-    return {name: table_of(name, load) or load for name, load in inputs.items() if callable(load)}
 
 
 def check_outputs(names: tuple[str, ...], loads: Mapping[str, Load]) -> None:
@@ -116,7 +111,7 @@ def first(inputs: Mapping[str, Any], name: str) -> float:
 
 
 def _force(name: str, load: Any, start: float) -> Variable:
-    more = "" if load is None else f", added to the table over {load.over} that the FMU holds"
+    more = "" if load is None else f", added to a {load.told().strip('<>')}"
     return Variable(name, "N", f"{INPUTS[name].meaning}{more}", "input", start=start)
 
 

@@ -19,7 +19,7 @@ from ....support.written import require_path, sealed, write_whole
 from ...content import Content
 from ...scene import Scene
 from ...schema import SceneError
-from ..loaded import require_one_table
+from ..loaded import require_tables
 from ..motion import has_masses
 from ..portable import heading, require_outputs
 from .description import description
@@ -109,7 +109,7 @@ def _check(scene: Scene, drive: str) -> None:
     content = scene.content
     if content.accuracy == "extended":
         raise SceneError(f'{where}: accuracy = "extended": an FMU has standard')
-    require_one_table(where, split(content.inputs)[1])
+    require_tables(where, split(content.inputs)[1], fmu=True)
     if drive == "torque" and not has_masses(content.inputs):
         raise SceneError(
             f"{where}: nothing moves under a torque without inertia: give [masses], or --input omega"
