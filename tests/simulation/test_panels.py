@@ -1,4 +1,4 @@
-"""Motions under a torque of t, theta and omega by panels of the crank angle: those of DOP853, and of arbs."""
+"""Motions under a torque of t, theta and omega in one call: those of one at a time, and of arbs."""
 
 import math
 
@@ -10,7 +10,6 @@ from benchmarks.rows import cranks
 from desaxe.simulation.loops import state
 from desaxe.simulation.loops.compiled import DesignFamily, motions, packed
 from desaxe.simulation.loops.motions import designs
-from desaxe.simulation.loops.picard import nodes_table
 from desaxe.simulation.loops.torque import compiled
 from desaxe.simulation.model import form_of
 from desaxe.simulation.panel import TABLE
@@ -97,7 +96,7 @@ def test_machine_code_has_the_values_of_plain_python():
     for run in (motions(), designs):
         outs = np.zeros((2, 3, 4)), np.full(2, -1, np.int8), np.empty((2, 4))
         with np.errstate(all="ignore"):  # the change of the first torques is from whatever the room had
-            run(law.copy(), data, *nothing, times, how, TABLE, nodes_table(), *outs)
+            run(law.copy(), data, *nothing, times, how, TABLE, *outs)
         answers.append(outs[0])
         assert outs[1].tolist() == [0, 0]
         assert outs[2][:, 0].tolist() == [2.0, 2.0]

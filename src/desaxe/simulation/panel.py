@@ -23,7 +23,7 @@ ONCE = legendre.legint(np.eye(NODES), lbnd=-1, axis=0) / 2.0  # series -> series
 RUNNING = legendre.legvander(_X, NODES) @ ONCE @ SERIES
 INTEGRAL = ONCE @ SERIES  # values at the nodes -> series of their integral
 ENDS = legendre.legvander(np.array([-1.0, 1.0]), NODES - 1) @ SERIES  # values at the nodes -> at both ends
-TABLE = np.vstack([PLACES[None], RUNNING, INTEGRAL, SERIES[-2:], ENDS, SERIES])  # of the compiled loops
+TABLE = np.vstack([PLACES[None], RUNNING, INTEGRAL, SERIES[-2:], ENDS, SERIES, RUNNING.T])  # of `newton`
 
 
 def basis(x: Array, degree: int) -> Array:

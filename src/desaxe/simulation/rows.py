@@ -31,7 +31,6 @@ from .events import NEVER
 from .history import PANELS, TELLS, told_of
 from .loops import state
 from .loops.compiled import DesignFamily, motions
-from .loops.picard import nodes_table
 from .loops.torque import compiled
 from .model import fixed_zeros, form_of
 from .panel import TABLE
@@ -303,14 +302,14 @@ def _run(
     deadline: Deadline,
 ) -> None:
     """Follow blocks of designs; designs are independent, so blocks do not change results."""
-    limits, kernel, tables = how.copy(), motions(), (TABLE, nodes_table())
+    limits, kernel = how.copy(), motions()
 
     def stop() -> None:  # the loops look at the most steps before each one
         limits[MOST_STEPS] = 0.0
 
     def block(a: int, b: int) -> None:
         law, data, kinks, sheets = (np.ascontiguousarray(part[a:b]) for part in known)
-        kernel(law, data, kinks, knots, sheets, t, limits, *tables, *(out[a:b] for out in outs))
+        kernel(law, data, kinks, knots, sheets, t, limits, TABLE, *(out[a:b] for out in outs))
 
     size = len(known[0])
     with progress_bar(unit="designs") if size > LARGE else nullcontext() as watch:

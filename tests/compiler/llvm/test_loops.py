@@ -12,7 +12,7 @@ from numpy import empty, int64, nextafter, zeros
 from desaxe.compiler.helpers import mul_add
 from desaxe.compiler.llvm import machine
 from desaxe.compiler.llvm.loops import CompiledLoops, apart
-from desaxe.simulation.loops import picard
+from desaxe.simulation.loops import newton
 
 WEIGHT, FIRST = 0.3, int64(2)
 
@@ -104,8 +104,8 @@ def test_arrays_are_contiguous():
 @pytest.mark.parametrize(
     ("function", "kinds", "operations"),
     [
-        (picard.integrate, ("f64", "f64", "f64[2]", "f64[2]", "i64", "i64"), {"fmul", "fmuladd"}),
-        (picard.slowness, ("f64", "f64[2]"), {"fdiv", "sqrt"}),
+        (newton.subtract, ("f64[1]", "f64", "f64[1]", "i64"), {"fmul", "fsub"}),
+        (newton.fill_rates, ("f64[1]", "f64[2]"), {"fdiv", "sqrt"}),
     ],
     ids=lambda value: getattr(value, "__name__", ""),
 )

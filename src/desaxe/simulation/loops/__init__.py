@@ -6,8 +6,6 @@ panels        the next panel, as long as tolerance and cuts allow
 newton        the law at its nodes, and Newton's method
 motions       motions of designs one after the other, one call for all
 state         their state, where it starts and what becomes of it; the pieces of loads
-over_angle    panels of the crank angle
-picard        what happens at their nodes
 compiled      the machine code of all, and the kernel that it calls
 torque        a torque's function, compiled alone
 """

@@ -1,10 +1,6 @@
 """Motions of designs, one after the other, in plain loops, which are compiled (`compiled`).
 
-A crank that turns fully without friction goes by panels of the crank angle (`over_angle`) where its speed
-lets it; all others, and where these fail, by panels of time (`march`).
-
 how      relative tolerance, t_end, most steps
-tables   of panels of time (`newton`) and of the angle (`picard`)
 history  rows of angles, speeds and accelerations
 """
 
@@ -18,16 +14,12 @@ from numpy import empty, int64, zeros
 from .cuts import JAMMED, KIND, KINK, LIMIT, ROW
 from .march import CUT, RESTS, acceleration, choose, step, wait
 from .newton import ANGLE, RATE_V, ROWS, SPEED
-from .over_angle import by_panel, over_panel
-from .panels import CHOSEN, GOES_ON, LEFT, NEAR, SHARP, T_END, WISH, T, motion, next_kink, value
-from .picard import ROWS as PICARD
+from .panels import CHOSEN, GOES_ON, LEFT, SHARP, T_END, T, motion, value
 from .state import (
-    DIRECTION,
     FIRST,
     FUNCTION,
     LAST,
     OMEGA_START,
-    OVER_Y,
     RUBS,
     THETA0,
     TORQUE,
@@ -42,7 +34,6 @@ from .state import (
 if TYPE_CHECKING:
     from typing import Any
 
-COLUMNS = int64(24)  # of the room of a panel
 CROWD, NARROW, BESIDE = 64, 0.1, 0.005  # so many panels, rad that they turn, of a speed on either side of it
 SHARPEST = 3e-11  # of a radian: a limit angle cannot be told better
 
@@ -109,25 +100,24 @@ def end_of(code: Any, cut: Any, kinks: Any) -> Any:
 
 
 def follow(
-    law: Any, data: Any, kinks: Any, knots: Any, sheets: Any, times: Any, how: Any, table: Any, panels: Any,
-    history: Any, numbers: Any,
+    law: Any, data: Any, kinks: Any, knots: Any, sheets: Any, times: Any, how: Any, table: Any, history: Any,
+    numbers: Any,
 ) -> Any:  # fmt: skip
     """The motion of one design: its status."""
-    y, new, scales, clock, sums, memory = empty(3), empty(3), zeros(3), zeros(7), zeros(6), zeros(4)
-    head, last, cut, still, room = zeros(7), zeros(7), zeros(6), empty(32), empty((PICARD, COLUMNS))
+    y, new, scales, clock, sums = empty(3), empty(3), zeros(3), zeros(7), zeros(6)
+    head, last, cut, still = zeros(7), zeros(7), zeros(6), empty(32)
     rows, matrix, series, before = zeros((ROWS, 16)), empty((32, 32)), empty((3, 17)), empty((3, 17))
     history[:] = nan
     if not start(law, data, how[1], y, scales):
         return 6
-    scales[0], clock[T_END], clock[SHARP], memory[0] = how[0], how[1], SHARPEST, 0.5
+    scales[0], clock[T_END], clock[SHARP] = how[0], how[1], SHARPEST
     clock[LEFT] = 1.0
     crowd, begin, row, t, steps = 0, inf, 0, 0.0, 0
     status: Any = -1
-    turns = law[FIRST] == -inf and law[RUBS] == 0.0 and len(knots) == 0 and law[TORQUE] != OVER_Y
     sums[0], sums[2] = energy_of(y, law, data), 0.5 * y[1] * y[1]
     sums[5] = abs(sums[0])
     while status == -1 and steps < how[2]:
-        code, end = GOES_ON, -1.0
+        code = GOES_ON
         if clock[CHOSEN] == 0.0:
             code = choose(y, clock, knots, sheets, law, data, rows, still)
         if code == RESTS and law[WAITS] > 0.0:
@@ -145,43 +135,25 @@ def follow(
             if t == 0.0:
                 history[0, row], history[1, row] = law[THETA0], law[OMEGA_START]
             row += 1
-        if turns and code == GOES_ON:
-            gap, kink, reached = next_kink(
-                y[0], law[DIRECTION], NEAR if clock[LEFT] > 0.0 else 0.0, kinks, law
-            )
-            end = by_panel(t, y, gap, law, data, how, panels, room, memory, new)
-            if end > t:
-                end, row = over_panel(
-                    t, end, y, new, times, row, law, data, how, panels, room, memory, history
-                )
-            if end > t:
-                clock[WISH], last[1], clock[LEFT], clock[T] = 0.1 * (end - t), 0.0, 0.0, end
-                if abs(memory[3]) == gap:
-                    clock[LEFT], clock[CHOSEN], new[0] = 1.0, 0.0, reached
-                    status = int64(kinks[kink, 2]) if kink >= 0 else -1
-        if code == GOES_ON and not end > t:
+        if code == GOES_ON:
             code = step(
                 y, clock, scales, kinks, knots, sheets, law, data, table, rows, matrix, last, before, head,
                 series, cut, new,
             )  # fmt: skip
-            status = end_of(code, cut, kinks)
-            if code != GOES_ON and code != CUT:
-                break
-            end = clock[T]
-            memory[2] = abs(new[0] - y[0])
-            while row < len(times) and times[row] <= end:
-                s = (times[row] - t) / head[1]
-                q, v = value(series[0], y[0], s), value(series[1], y[1], s)
-                tell_at(times[row], q, v, law, data, history, row)
-                row += 1
-            for k in range(7):
-                last[k] = head[k]
-            for k in range(3):
-                for j in range(17):
-                    before[k, j] = series[k, j]
-        elif code != GOES_ON:
-            status = end_of(code, cut, kinks)
+        status = end_of(code, cut, kinks)
+        if code != GOES_ON and code != CUT:
             break
+        end = clock[T]
+        while row < len(times) and times[row] <= end:
+            s = (times[row] - t) / head[1]
+            q, v = value(series[0], y[0], s), value(series[1], y[1], s)
+            tell_at(times[row], q, v, law, data, history, row)
+            row += 1
+        for k in range(7):
+            last[k] = head[k]
+        for k in range(3):
+            for j in range(17):
+                before[k, j] = series[k, j]
         account(y, new, law, data, sums)
         scales[1] = max(scales[1], abs(y[1]))
         t, steps = end, steps + 1
@@ -195,8 +167,8 @@ def follow(
 
 
 def designs(
-    law: Any, data: Any, kinks: Any, knots: Any, sheets: Any, times: Any, how: Any, table: Any, panels: Any,
-    history: Any, status: Any, numbers: Any,
+    law: Any, data: Any, kinks: Any, knots: Any, sheets: Any, times: Any, how: Any, table: Any, history: Any,
+    status: Any, numbers: Any,
 ) -> None:  # fmt: skip
     """Every design: histories, status, and end, energy residual, work and its rounding as numbers."""
     for n in range(len(law)):
@@ -204,5 +176,5 @@ def designs(
             for k in range(4):
                 numbers[n, k] = nan
             status[n] = follow(
-                law[n], data[n], kinks[n], knots, sheets[n], times, how, table, panels, history[n], numbers[n]
+                law[n], data[n], kinks[n], knots, sheets[n], times, how, table, history[n], numbers[n]
             )

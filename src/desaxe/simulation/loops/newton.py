@@ -20,6 +20,7 @@ from ...compiler.llvm.loops import address, apart, call
 from .state import (
     ANSWER,
     BEND,
+    CONSTANT,
     CONTACT,
     CONTACT_DATA,
     DRAG,
@@ -52,11 +53,12 @@ if TYPE_CHECKING:
 
 TIME, ANGLE, SPEED, TURNED = range(OUTPUTS, OUTPUTS + 4)  # as a compiled torque takes them
 SLOPE, RATE_Q, RATE_V, RATE_W, Q_BY_Q, Q_BY_V, V_BY_Q, V_BY_V, CURVED = range(OUTPUTS + 4, OUTPUTS + 13)
-BY_THETA, BY_OMEGA, NORMAL, WEDGE, UNSURE, ROWS = range(OUTPUTS + 13, OUTPUTS + 19)
-RUNNING, SERIES, TAILS, ENDS, POINTS = 1, 17, 34, 36, 38  # rows of the table
+BY_THETA, BY_OMEGA, NORMAL, WEDGE, UNSURE, BENT, ROWS = range(OUTPUTS + 13, OUTPUTS + 20)
+RUNNING, SERIES, TAILS, ENDS, POINTS, ACROSS = 1, 17, 34, 36, 38, 54  # rows of the table
 NONE, STOP = 1, 2  # the law has no value; an exception ends the motion
 ITERATIONS = 14
 SLOW = 0.1  # of the step before: then the matrix is made anew
+SMALL_PIVOT = 0.5  # of a matrix that differs from 1 by the length of a panel: below it rows are exchanged
 CALM = 0.02  # of a coordinate, by a panel: then steps without a matrix do
 BLUR = 4e-16  # over cos(q)^2: the rounding of the rates next to a limit angle
 ROUNDING = 4e-15  # of the size of a coordinate
@@ -96,21 +98,30 @@ def places(state: Any, law: Any, rows: Any) -> None:
         if half > 0.0:
             rows[ANGLE, i] = middle + half * sin(q)
             rows[SLOPE, i] = half * cos(q) if abs(q) < 0.5 * pi else nan
+            rows[BENT, i] = sin(q) / cos(q)
         else:
             rows[ANGLE, i] = min(max(q, law[FIRST] + EDGE), law[LAST] - EDGE)
             rows[SLOPE, i] = 1.0
 
 
-def torques(law: Any, rows: Any, slopes: Any) -> int:
-    """The torque at the nodes, of a closed form or a compiled function, with its derivatives."""
+def pushes(law: Any, rows: Any, slopes: Any) -> int:
+    """The torque at the nodes and that of the force and of gravity, with their derivatives."""
     if law[TORQUE] == FUNCTION:
-        return function_at(law, rows, slopes)
+        code = function_at(law, rows, slopes)
+        if code != 0:
+            return code
+    pushed = law[FORCE] != CONSTANT or law[FORCE + 1] != 0.0
     for i in range(16):
-        value, by_theta, by_omega, by_Y = piece(
-            law[TORQUE:FORCE], rows[ANGLE, i], rows[SPEED, i], rows[POSITION, i]
-        )
-        rows[TURNED, i], rows[BY_THETA, i], rows[BY_OMEGA, i] = value, by_theta, by_omega
-        rows[BY_THETA, i] += by_Y * rows[TRAVEL, i]
+        theta, omega, Y, travel = rows[ANGLE, i], rows[SPEED, i], rows[POSITION, i], rows[TRAVEL, i]
+        if law[TORQUE] != FUNCTION:
+            value, by_theta, by_omega, by_Y = piece(law[TORQUE:FORCE], theta, omega, Y)
+            rows[TURNED, i], rows[BY_THETA, i], rows[BY_OMEGA, i] = value, by_theta + by_Y * travel, by_omega
+        if pushed:
+            value, by_theta, by_omega, by_Y = piece(law[FORCE:SIDEWAYS], theta, omega, Y)
+            rows[TURNED, i] += value * travel
+            rows[BY_THETA, i] += (by_theta + by_Y * travel) * travel + value * rows[BEND, i]
+            rows[BY_OMEGA, i] += by_omega * travel
+        rows[BY_THETA, i] -= rows[GRAVITY_SLOPE, i]
     return 0
 
 
@@ -126,12 +137,14 @@ def law_at(state: Any, law: Any, data: Any, rows: Any, slopes: Any) -> int:
         return call(int64(law[ANSWER]), state, rows, slopes)
     for i in range(16):
         rows[SPEED, i] = state[16 + i] / (sqrt(rows[INERTIA, i]) if rows[INERTIA, i] >= 0.0 else nan)
-    guide: Any = empty((4, 16))
-    code = torques(law, rows, slopes)
-    if law[RUBS] > 0.0 and code == 0 and guide_at(angles, law, rows, guide) != 0:
-        return call(int64(law[ANSWER]), state, rows, slopes)
+    code = pushes(law, rows, slopes)
+    if law[RUBS] > 0.0 and code == 0:
+        guide: Any = empty((4, 16))
+        if guide_at(angles, law, rows, guide) != 0:
+            return call(int64(law[ANSWER]), state, rows, slopes)
+        rub(law, rows, guide)
     if code == 0:
-        fill_rates(state, law, rows, guide)
+        fill_rates(law, rows)
     return code
 
 
@@ -152,48 +165,42 @@ def guide_at(angles: Any, law: Any, rows: Any, guide: Any) -> int:
     return call(int64(law[CONTACT]), words, words[8:], words[9:], int64(law[CONTACT_DATA]))
 
 
-def rub(i: Any, push: float, law: Any, rows: Any, guide: Any) -> Any:
-    """The torque of friction at a node, as a share of the normal force without friction, and that force."""
-    inertia, omega, by_alpha = rows[INERTIA, i], rows[SPEED, i], guide[1, i]
-    bent = 0.5 * rows[INERTIA_SLOPE, i] * omega * omega
-    moved = by_alpha * (push - rows[GRAVITY, i] - bent) / inertia
-    free = guide[0, i] + moved
-    rows[UNSURE, i] = NOISE * (abs(guide[0, i]) + abs(moved))
-    arm = law[DRAG] * rows[TRAVEL, i]
-    lean = law[LEANS] * sin(guide[3, i]) / cos(guide[3, i])
-    wedge = lean * law[DRAG] - arm * by_alpha / inertia
-    rows[NORMAL, i], rows[WEDGE, i] = law[PRESSED] * free, law[PRESSED] * wedge
-    return arm * law[PRESSED] / (1.0 - law[PRESSED] * wedge), free
+def rub(law: Any, rows: Any, guide: Any) -> None:
+    """What friction takes at the nodes, off the push and its derivatives; the normal force without it.
 
-
-def fill_rates(state: Any, law: Any, rows: Any, guide: Any) -> None:
-    """The rates at the nodes and their derivatives, from inertia, torque and force."""
-    half = law[HALF]
+    Derivatives are of its torque by alpha and omega alone: good enough for an iteration.
+    """
     for i in range(16):
-        slope, inertia, travel, omega = rows[SLOPE, i], rows[INERTIA, i], rows[TRAVEL, i], rows[SPEED, i]
-        root = sqrt(inertia) if inertia >= 0.0 else nan
-        pushed, pushed_theta, pushed_omega, pushed_Y = piece(
-            law[FORCE:SIDEWAYS], rows[ANGLE, i], omega, rows[POSITION, i]
-        )
-        pushed_theta += pushed_Y * travel
-        push = rows[TURNED, i] + pushed * travel
-        share, by_alpha = 0.0, 0.0
-        if law[RUBS] > 0.0:
-            share, free = rub(i, push, law, rows, guide)
-            push -= share * free
-            by_alpha = guide[1, i] / inertia
-        speed, left = omega / slope, push - rows[GRAVITY, i]
-        by_theta = rows[BY_THETA, i] + pushed_theta * travel + pushed * rows[BEND, i] - rows[GRAVITY_SLOPE, i]
-        by_omega = rows[BY_OMEGA, i] + pushed_omega * travel
-        if law[RUBS] > 0.0:  # of its torque by alpha and omega alone: good enough for an iteration
-            by_theta *= 1.0 - share * by_alpha
-            by_omega -= share * (guide[2, i] + (by_omega - rows[INERTIA_SLOPE, i] * omega) * by_alpha)
-        steeper = 0.5 * rows[INERTIA_SLOPE, i] / inertia
-        rows[RATE_Q, i], rows[RATE_V, i], rows[RATE_W, i] = speed, left / root, push * omega
-        rows[CURVED, i] = left / root / (root * slope)
-        rows[Q_BY_Q, i] = -omega * steeper + (speed * sin(state[i]) / cos(state[i]) if half > 0.0 else 0.0)
-        rows[Q_BY_V, i], rows[V_BY_V, i] = 1.0 / (root * slope), by_omega / inertia
-        rows[V_BY_Q, i] = (by_theta - by_omega * omega * steeper - left * steeper) / root * slope
+        inertia, omega = rows[INERTIA, i], rows[SPEED, i]
+        by_alpha, bent = guide[1, i] / inertia, 0.5 * rows[INERTIA_SLOPE, i] * omega * omega
+        moved = by_alpha * (rows[TURNED, i] - rows[GRAVITY, i] - bent)
+        free = guide[0, i] + moved
+        rows[UNSURE, i] = NOISE * (abs(guide[0, i]) + abs(moved))
+        arm = law[DRAG] * rows[TRAVEL, i]
+        lean = law[LEANS] * sin(guide[3, i]) / cos(guide[3, i])
+        wedge = lean * law[DRAG] - arm * by_alpha
+        rows[NORMAL, i], rows[WEDGE, i] = law[PRESSED] * free, law[PRESSED] * wedge
+        share = arm * law[PRESSED] / (1.0 - law[PRESSED] * wedge)
+        rows[TURNED, i] -= share * free
+        by_omega = rows[BY_OMEGA, i]
+        rows[BY_THETA, i] *= 1.0 - share * by_alpha
+        rows[BY_OMEGA, i] -= share * (guide[2, i] + (by_omega - rows[INERTIA_SLOPE, i] * omega) * by_alpha)
+
+
+def fill_rates(law: Any, rows: Any) -> None:
+    """The rates at the nodes and their derivatives, from inertia and push."""
+    apart()
+    for i in range(16):
+        slope, inertia, omega = rows[SLOPE, i], rows[INERTIA, i], rows[SPEED, i]
+        root, left, by_omega = sqrt(max(inertia, 0.0)), rows[TURNED, i] - rows[GRAVITY, i], rows[BY_OMEGA, i]
+        gain, speed, steeper = 1.0 / (root * slope), omega / slope, 0.5 * rows[INERTIA_SLOPE, i] / inertia
+        rows[RATE_Q, i], rows[RATE_V, i], rows[RATE_W, i] = speed, left / root, rows[TURNED, i] * omega
+        rows[CURVED, i] = left / root * gain
+        rows[Q_BY_Q, i], rows[Q_BY_V, i], rows[V_BY_V, i] = -omega * steeper, gain, by_omega / inertia
+        rows[V_BY_Q, i] = (rows[BY_THETA, i] - (by_omega * omega + left) * steeper) * slope / root
+    if law[HALF] > 0.0:
+        for i in range(16):
+            rows[Q_BY_Q, i] += rows[RATE_Q, i] * rows[BENT, i]
 
 
 def product(row: Any, values: Any) -> float:
@@ -208,63 +215,72 @@ def product(row: Any, values: Any) -> float:
 
 
 def fill_matrix(h: float, rows: Any, table: Any, matrix: Any) -> None:
-    """Newton's matrix."""
+    """Newton's matrix, transposed."""
     apart()
-    for i in range(16):
-        for j in range(16):
-            share = -h * table[RUNNING + i, j]
-            matrix[i, j], matrix[i, 16 + j] = share * rows[Q_BY_Q, j], share * rows[Q_BY_V, j]
-            matrix[16 + i, j], matrix[16 + i, 16 + j] = share * rows[V_BY_Q, j], share * rows[V_BY_V, j]
+    for j in range(16):
+        qq, qv, vq, vv = rows[Q_BY_Q, j], rows[Q_BY_V, j], rows[V_BY_Q, j], rows[V_BY_V, j]
+        for i in range(16):
+            share = -h * table[ACROSS + j, i]
+            matrix[j, i], matrix[16 + j, i] = share * qq, share * qv
+            matrix[j, 16 + i], matrix[16 + j, 16 + i] = share * vq, share * vv
     for i in range(32):
         matrix[i, i] += 1.0
 
 
 def subtract(row: Any, share: float, other: Any, first: Any) -> None:
-    """Subtract a multiple of a row from another, from a column on."""
+    """Subtract a multiple of a row from another, in one half of the columns."""
     apart()
-    for j in range(first, len(row)):
-        row[j] -= share * other[j]
+    for j in range(16):
+        row[first + j] -= share * other[first + j]
 
 
-def factor(matrix: Any, order: Any) -> bool:
-    """The triangular factors of a matrix, in its memory, and the order of its rows; False if it has none."""
-    size = len(matrix)
-    for k in range(size):
+def factor(matrix: Any, lower: Any, order: Any) -> bool:
+    """The triangular factors of a matrix and the order of its rows; False if it has none.
+
+    The upper one takes its memory, whose other half is left behind: whole vectors are faster than no work.
+    """
+    for k in range(32):
         best = k
-        for i in range(k + 1, size):
-            if abs(matrix[i, k]) > abs(matrix[best, k]):
-                best = i
+        if abs(matrix[k, k]) < SMALL_PIVOT:
+            for i in range(k + 1, 32):
+                if abs(matrix[i, k]) > abs(matrix[best, k]):
+                    best = i
         order[k] = best
         if best != k:
-            for j in range(size):
+            for j in range(32):
                 matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
+                lower[k, j], lower[best, j] = lower[best, j], lower[k, j]
         if not 0.0 < abs(matrix[k, k]) < inf:
             return False
-        for i in range(k + 1, size):
-            share = matrix[i, k] / matrix[k, k]
-            matrix[i, k] = share
-            if share != 0.0:
-                subtract(matrix[i], share, matrix[k], k + 1)
+        inverse = 1.0 / matrix[k, k]
+        lower[k, k] = inverse
+        for i in range(k + 1, 32):
+            share = matrix[i, k] * inverse
+            lower[i, k] = share
+            if k < 16:
+                subtract(matrix[i], share, matrix[k], int64(0))
+            subtract(matrix[i], share, matrix[k], int64(16))
     return True
 
 
-def back(matrix: Any, order: Any, x: Any) -> None:
-    """Solve for a right-hand side, in its memory."""
-    size = len(matrix)
-    for k in range(size):
+def solve(upper: Any, lower: Any, order: Any, x: Any) -> None:
+    """Solve for a right-hand side, in its memory, with the factors of the transposed matrix."""
+    y: Any = empty(32)
+    for k in range(32):
+        y[k] = x[k] * lower[k, k]
+        if k < 16:
+            subtract(x, y[k], upper[k], int64(0))
+        subtract(x, y[k], upper[k], int64(16))
+    for n in range(32):
+        k = 31 - n
+        x[k] = y[k]
+        subtract(y, x[k], lower[k], int64(0))
+        if k > 15:
+            subtract(y, x[k], lower[k], int64(16))
+    for n in range(32):
+        k = 31 - n
         best = int64(order[k])
         x[k], x[best] = x[best], x[k]
-    for i in range(size):
-        total = x[i]
-        for j in range(i):
-            total -= matrix[i, j] * x[j]
-        x[i] = total
-    for k in range(size):
-        i = size - 1 - k
-        total = x[i]
-        for j in range(i + 1, size):
-            total -= matrix[i, j] * x[j]
-        x[i] = total / matrix[i, i]
 
 
 def calm(h: float, rows: Any) -> bool:
@@ -283,6 +299,7 @@ def newton(
     """Solve a panel, whose state is a guess: the error of its inside, -1 where there is none, -2 to stop."""
     order: Any = empty(32)
     miss: Any = empty(32)
+    lower: Any = empty((32, 32))
     aim, before, made, simple = max(0.02 * scales[0], ROUNDING), inf, False, False
     radian = max(1.0, abs(y[0]))
     for i in range(16):
@@ -298,10 +315,10 @@ def newton(
             made, simple = True, calm(h, rows)
             if not simple:
                 fill_matrix(h, rows, table, matrix)
-                if not factor(matrix, order):
+                if not factor(matrix, lower, order):
                     return -1.0
         if not simple:
-            back(matrix, order, miss)
+            solve(matrix, lower, order, miss)
         top, far, fast, total = scales[1], 0.0, 0.0, 0.0
         for i in range(16):
             top = max(top, abs(state[16 + i]))

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from numpy import empty, nextafter
 
+from ...compiler.llvm.loops import apart
 from .newton import (
     ANGLE,
     CURVED,
@@ -52,7 +53,7 @@ def value(series: Any, start: float, s: float) -> float:
     x = 2.0 * s - 1.0
     before, now, total = 1.0, x, series[0] + series[1] * x
     for n in range(1, 16):
-        before, now = now, ((2.0 * n + 1.0) * x * now - n * before) / (n + 1.0)
+        before, now = now, (2.0 * n + 1.0) / (n + 1.0) * (x * now) - n / (n + 1.0) * before
         total += series[n + 1] * now
     return float(start + total)
 
@@ -73,12 +74,29 @@ def guess(t: float, h: float, y: Any, last: Any, series: Any, table: Any, rows: 
             state[i] = y[0] + speed * s + (0.5 * bend * s * s if speed == 0.0 else 0.0)
             state[16 + i] = y[1] + rate * s
         return
+    nodes: Any = empty((4, 16))
+    for i in range(16):
+        nodes[0, i] = (t + h * table[0, i] - last[0]) / last[1]
+        nodes[1, i], nodes[2, i] = 2.0 * min(nodes[0, i], AHEAD) - 1.0, 1.0
+        nodes[3, i] = nodes[1, i]
+        state[i] = last[3] + series[0, 0] + series[0, 1] * nodes[1, i]
+        state[16 + i] = last[4] + series[1, 0] + series[1, 1] * nodes[1, i]
+    for n in range(1, 16):
+        term(2.0 - 1.0 / (n + 1.0), 1.0 - 1.0 / (n + 1.0), series[0, n + 1], series[1, n + 1], nodes, state)
     for k in range(2):
         far, near = value(series[k], last[3 + k], AHEAD), value(series[k], last[3 + k], AHEAD - 1e-3)
         for i in range(16):
-            s = (t + h * table[0, i] - last[0]) / last[1]
-            ahead = value(series[k], last[3 + k], min(s, AHEAD))
-            state[16 * k + i] = ahead + (far - near) / 1e-3 * max(s - AHEAD, 0.0)
+            state[16 * k + i] += (far - near) / 1e-3 * max(nodes[0, i] - AHEAD, 0.0)
+
+
+def term(up: float, down: float, of_q: float, of_v: float, nodes: Any, state: Any) -> None:
+    """Add the next polynomial of a series at all nodes, from the two before."""
+    apart()
+    for i in range(16):
+        one = up * (nodes[1, i] * nodes[3, i]) - down * nodes[2, i]
+        nodes[2, i], nodes[3, i] = nodes[3, i], one
+        state[i] += of_q * one
+        state[16 + i] += of_v * one
 
 
 def time_over(gap: float, speed: float, bend: float) -> float:
