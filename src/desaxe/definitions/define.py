@@ -5,8 +5,8 @@ from keyword import iskeyword
 from typing import Any
 
 from ..compiler.passes.pipeline import optimise
-from ..compiler.program import RESERVED, Line, Note, Program
-from ..compiler.text import write_function
+from ..compiler.program import RESERVED, Note
+from ..compiler.text import read_function, write_function
 from ..mechanism.inputs import INPUTS, Input
 from ..mechanism.names import INTERNAL, parts
 from ..mechanism.own import Definition, change, closure, derived_names, register, rows_of
@@ -16,8 +16,7 @@ from ..support.shown import shown
 from ..units.dimensions import NONE, unit_text
 from ..units.parse import coherent_unit, exact_quantity, rounded
 from ..units.table import PI
-from .expression import FUNCTIONS, ExpressionText, Token, parse
-from .lowering import Lowering, Value, dimension_of, dimension_text
+from .expression import FUNCTIONS, Expression, Value, dimension_of, dimension_text
 
 LONGEST_NAME = 48
 LONGEST_CONSTANT = 100
@@ -118,21 +117,23 @@ def compiled(
     meaning = _checked_text(name, "meaning", meaning, LONGEST_MEANING)
     if not isinstance(expression, str):
         raise TypeError(f"{name}: the expression is a text, got {type(expression).__name__}")
-    source = ExpressionText(name, expression)
-    tree, words = parse(source)
-    expression = " ".join(expression.split())
     constants = {key: str(v) if hasattr(v, "magnitude") else v for key, v in constants.items()}
     values = {key: _constant(name, key, value) for key, value in constants.items()}
-    unused = [key for key in values if key not in {word[0] for word in words}]
     values["pi"] = Value(float(PI), NONE)
-    uses = _uses(source, [word for word in words if word[0] not in values], known, constants)
-    lowering = Lowering(source, {**values, **uses})
-    value = lowering.value(tree)
-    unit = _unit(source, unit, value)
+    source = Expression(
+        name, expression, lambda word: values.get(word) or _quantity(word, name, known, values)
+    )
+    expression = " ".join(expression.split())
+    uses = [word for word in source.names if word not in values]
+    if not uses:
+        source.refuse_all("a constant: it uses no quantity and no input")
+    unit = _unit(source, unit)
+    unused = [key for key in constants if key not in source.names]
     if unused:
         raise ValueError(f"{name}: constant {unused[0]} is not used in {expression!r}")
-    lines = (*lowering.lines, Line(OUTPUT, "copy", (value.argument,)))
-    program = optimise(Program(tuple(uses), lines, (OUTPUT,), {OUTPUT: Note(unit, meaning, expression)}))
+    body = "\n    ".join([*source.lines, f"{OUTPUT} = {source.value.argument}", f"return {OUTPUT}"])
+    program = read_function(f"def own({', '.join(uses)}):\n    {body}\n")
+    program = optimise(program._replace(inputs=tuple(uses), notes={OUTPUT: Note(unit, meaning, expression)}))
     text = write_function(program, "own", f"{name}, in SI units and radians.")
     stored = tuple((key, v if isinstance(v, str) else float(v)) for key, v in constants.items())
     return Definition(name, expression, unit, meaning, stored, text)
@@ -146,10 +147,9 @@ def _check_name(name: Any) -> None:
         raise ValueError(f"{shown(name)}: {limit}")
     if "_wrt_" in name or "omega0" in name:
         raise ValueError(f"{name!r}: '_wrt_' and 'omega0' are parts of the names of sensitivities")
-    if name in derived_names():
-        raise ValueError(f"{name!r} is a quantity of desaxe already")
-    if name in INPUTS or name in TAKEN or name in INTERNAL or iskeyword(name):
-        raise ValueError(f"{name!r} is a name of desaxe already")
+    if any(name in taken for taken in (derived_names(), INPUTS, TAKEN, INTERNAL)) or iskeyword(name):
+        kind = "quantity" if name in derived_names() else "name"
+        raise ValueError(f"{name!r} is a {kind} of desaxe already")
     if name in FUNCTIONS or name in RESERVED or name == "pi":
         raise ValueError(f"{name!r} is a function of expressions")
 
@@ -179,42 +179,37 @@ def _constant(owner: str, name: str, value: Any) -> Value:
     return Value(rounded(what, value, exact), dimension_of(unit))
 
 
-def _uses(
-    source: ExpressionText, words: list[Token], known: Mapping[str, Definition], constants: Iterable[str]
-) -> dict[str, Value]:
-    """The quantities and inputs of an expression, in order; ValueError that marks the first unknown name."""
-    uses: dict[str, Value] = {}
-    for word in words:
-        name, base = word[0], parts(word[0])[0]
-        if base == source.name:
-            source.refuse(*word.span(), f"{base} would be defined by itself")
-        if base == "status":
-            source.refuse(*word.span(), "status is not a real number")
-        row = (rows_of(known[base], known) if base in known else derived_names()).get(name)
-        if row is None and name not in INPUTS:
-            everything = (*derived_names(), *INPUTS, *known, *constants)
-            hint = did_you_mean(name, everything).strip() if len(name) <= LONGEST_NAME else ""
-            source.refuse(*word.span(), f"unknown name {shown(name)}{'; ' * bool(hint)}{hint}")
-        uses[name] = Value(name, dimension_of(coherent_unit(row[0] if row else INPUTS[name].unit)))
-    if not uses:
-        source.refuse_all("a constant: it uses no quantity and no input")
-    return uses
+def _quantity(
+    word: str, defined: str, known: Mapping[str, Definition], constants: Iterable[str]
+) -> Value | str:
+    """A quantity or an input of an expression, or what is wrong with the name."""
+    base = parts(word)[0]
+    if base == defined:
+        return f"{base} would be defined by itself"
+    if base == "status":
+        return "status is not a real number"
+    row = (rows_of(known[base], known) if base in known else derived_names()).get(word)
+    if row is None and word not in INPUTS:
+        everything = (*derived_names(), *INPUTS, *known, *constants)
+        hint = did_you_mean(word, everything).strip() if len(word) <= LONGEST_NAME else ""
+        return f"unknown name {shown(word)}{'; ' * bool(hint)}{hint}"
+    return Value(word, dimension_of(coherent_unit(row[0] if row else INPUTS[word].unit)))
 
 
-def _unit(source: ExpressionText, unit: Any, value: Value) -> str:
+def _unit(source: Expression, unit: Any) -> str:
     """The unit, checked against the dimension of the expression."""
-    dimension = value.dimension or NONE
+    dimension = source.value.dimension or NONE
+    right = dimension_text(dimension)
     if unit is None:
         if any(power.denominator != 1 for power in dimension[:4]):
-            text = dimension_text(dimension)
-            source.refuse_all(f"its dimension, {text}, has no unit: a power of it is not an integer")
-        return unit_text(NONE) if dimension == NONE else dimension_text(dimension)
+            source.refuse_all(f"its dimension, {right}, has no unit: a power of it is not an integer")
+        return unit_text(NONE) if dimension == NONE else right
     text = _checked_text(source.name, "unit", unit, LONGEST_UNIT)
     try:
         requested = dimension_of(coherent_unit(text))
     except ValueError as error:
         raise ValueError(f"{source.name}: {error}") from None
     if requested != dimension:
-        wrong, right = dimension_text(requested), dimension_text(dimension)
+        wrong = dimension_text(requested)
         source.refuse_all(f"the unit {text!r} is {wrong}, but the expression is {right}")
     return text

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Set
 from math import inf, isfinite
 from typing import Any, NamedTuple
 
-from ..support.forks import IMPORTS
+from ..support.lazy import np
 from ..support.shown import shown
 from ..units.parse import in_unit, parse_unit
 from ..units.scaling import by_digits
@@ -119,7 +119,4 @@ def _finite(what: str, values: list[Any]) -> list[float]:
 
 
 def _array(numbers: list[float]) -> Any:
-    with IMPORTS:
-        import numpy as np
-
     return np.array(numbers)

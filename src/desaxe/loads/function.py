@@ -9,7 +9,7 @@ from typing import Any
 from ..mechanism.closed import TURN
 from ..mechanism.messages import Message, listed, message_of, named
 from ..support.computed import computed_once
-from ..support.forks import IMPORTS
+from ..support.lazy import np
 from .load import OverTheta
 from .table import SAME
 
@@ -40,9 +40,6 @@ class FunctionOverTheta(OverTheta):
     @computed_once
     def is_periodic(self) -> bool:
         """True where the function has the same values a period earlier and later, but for rounding."""
-        with IMPORTS:
-            import numpy as np
-
         angles = self.every * ((np.arange(PROBES) + 0.25) * GOLDEN % 1.0)
         shifted = angles + self.every * np.array([[0.0], [-1.0], [1.0]])
         values = called(self.function, {"theta": shifted.ravel()}, "the load").reshape(shifted.shape)
@@ -66,9 +63,6 @@ class FunctionOverTheta(OverTheta):
         return [a for a in self._after_jumps(sorted(near)) if low <= a <= high] if near else []
 
     def _after_jumps(self, angles: list[float]) -> list[float]:
-        with IMPORTS:
-            import numpy as np
-
         nodes = np.array(angles)[:, None]
         near = nodes + np.spacing(np.abs(nodes)) * np.arange(-ROUNDED, ROUNDED + 1)
         values = called(self.function, {"theta": near}, "the load")
@@ -99,9 +93,6 @@ def called(function: Callable[..., Any], columns: Mapping[str, Any], what: str) 
     """
     if all(isinstance(column, float) for column in columns.values()):
         return _one(function, columns, what)
-    with IMPORTS:
-        import numpy as np
-
     arrays = np.broadcast_arrays(*(np.asarray(column, float) for column in columns.values()))
     good, shape = np.logical_and.reduce([np.isfinite(array) for array in arrays]), arrays[0].shape
     passed = [*arrays] if good.all() else [array[good] for array in arrays]

@@ -22,7 +22,7 @@ from ..mechanism.names import LENGTHS
 from ..mechanism.quantity_units import si_unit
 from ..mechanism.read import in_si
 from ..support.computed import computed_once
-from ..support.forks import IMPORTS
+from ..support.lazy import np
 from ..support.recent import Recent
 from .table import Arrays, Table, arrays_of, polynomial
 from .words import told
@@ -167,9 +167,6 @@ class Load(ABC):
     @computed_once
     def columns(self) -> tuple[Any, Any]:
         """The knots and the coefficients of a table, as arrays that kernels take."""
-        with IMPORTS:
-            import numpy as np
-
         knots, rows = self.lists
         return np.array(knots), np.array(rows)
 
@@ -348,9 +345,6 @@ class OverY(Load):
             back = self.outward.jumps_at_points and way * self.rises < 0.0
             result = bisect_left(self.outward.knots, Y) if back else self.outward.piece(Y)
             return result + len(self.outward.rows) if self.inward is not None and way < 0.0 else result
-        with IMPORTS:
-            import numpy as np
-
         knots = self._arrays[0]
         result = np.searchsorted(knots, Y, side="right")
         if self.outward.jumps_at_points:
@@ -367,9 +361,6 @@ class OverY(Load):
             table = self.tables[way]
             lost = isinstance(Y, float) and Y - Y != 0.0
             return (nan, nan) if lost else polynomial(table.rows[number], Y - table.origin(number))
-        with IMPORTS:
-            import numpy as np
-
         _, origins, rows = self._arrays
         with np.errstate(invalid="ignore"):
             distance = np.where(np.isfinite(Y), Y - origins[piece], np.nan)
@@ -379,9 +370,6 @@ class OverY(Load):
     @computed_once
     def _arrays(self) -> tuple[Any, Any, Any]:
         """The knots of one way, and the origin and the coefficients of every piece."""
-        with IMPORTS:
-            import numpy as np
-
         knots = np.array(self.outward.knots)
         rows = [row for table in self.tables for row in table.rows]
         return knots, np.tile(np.append(knots[:1], knots), len(self.tables)), np.array(rows).T
@@ -412,9 +400,6 @@ def ahead(motion: Mapping[str, Any], way: Any) -> Any:
     motion   Y and its derivatives by theta
     way      negative where the crank turns backwards
     """
-    with IMPORTS:
-        import numpy as np
-
     _, slope, bend = (motion[name] for name in POSITION)
     forward = np.where(np.equal(slope, 0.0), bend, slope)
     return np.where(np.less(way, 0.0), -forward, forward)
@@ -429,7 +414,4 @@ def sign_of(x: Any) -> Any:
     """1, or -1 below 0, of a number or an array."""
     if isinstance(x, float):
         return 1.0 if x >= 0.0 else -1.0
-    with IMPORTS:
-        import numpy as np
-
     return np.where(x >= 0.0, 1.0, -1.0)

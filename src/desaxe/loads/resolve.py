@@ -20,7 +20,7 @@ from ..mechanism.names import STATUS, parts, sensitivity
 from ..mechanism.own import Definition, Register, register, used_by
 from ..mechanism.program import Variant, program_of
 from ..mechanism.quantity_units import UnitSystem
-from ..support.forks import IMPORTS
+from ..support.lazy import np
 from ..support.recent import Recent
 from .along_motion import COLUMNS, FunctionOfMotion, OfMotion, SumOfLoads
 from .arguments import arguments_of, by_position
@@ -217,7 +217,4 @@ def way_of(inputs: Mapping[str, Any]) -> Any:
         speed, alpha = inputs.get("omega0"), None
     if speed is None or alpha is None:
         return 1.0 if speed is None else speed
-    with IMPORTS:
-        import numpy as np
-
     return np.where(np.equal(speed, 0.0), alpha, speed)

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from ..support.computed import computed_once
 from ..support.extras import needed
-from ..support.forks import IMPORTS
+from ..support.lazy import np
 
 Row = tuple[float, float, float, float]
 
@@ -79,9 +79,6 @@ class Table:
         return polynomial(self.rows[piece], x - self.origin(piece))
 
     def _arrays(self, x: Any) -> tuple[Any, Any]:
-        with IMPORTS:
-            import numpy as np
-
         knots, rows = self._numpy
         x = np.asarray(x, float)
         with np.errstate(invalid="ignore"):
@@ -96,9 +93,6 @@ class Table:
 
     @computed_once
     def _numpy(self) -> tuple[Any, Any]:
-        with IMPORTS:
-            import numpy as np
-
         return np.array(self.knots), np.array(self.rows).T
 
     def __getstate__(self) -> dict[str, Any]:

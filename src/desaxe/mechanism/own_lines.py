@@ -5,16 +5,17 @@ uses. Only where a name has none (a sensitivity, the margin) its lines are diffe
 has no derivative at 0 (NaN); at a kink the derivative is that of the side that is taken.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from math import nan
 from typing import NamedTuple
 
 from ..compiler.passes.differentiate import RULES as EVERYWHERE
 from ..compiler.passes.differentiate import SIGNED, Chain
+from ..compiler.passes.pipeline import optimise
 from ..compiler.passes.slicing import keep_outputs
 from ..compiler.program import Argument, Line, Note, Program, names_in, renamed
-from ..compiler.text import ProgramText
+from ..compiler.text import ProgramText, write_function
 from .names import joined, parts, sensitivity
 from .own import LENGTH_OF, Definition, depends, derivative_row, derived_names, leaves
 
@@ -169,3 +170,28 @@ def _value_lines(definition: Definition) -> tuple[Line, ...]:
     own = {line.name: f"{PREFIX}{definition.name}_{n}" for n, line in enumerate(program.lines)}
     own[program.outputs[0]] = line_name(definition.name, (definition,))
     return renamed(program, own).lines
+
+
+@lru_cache(maxsize=256)
+def conditions_of(own: tuple[Definition, ...]) -> tuple[Definition, ...]:
+    """Definitions of what is 0 where a quantity may jump or have a kink.
+
+    These are the differences that `where`, `min` and `max` compare, and what `abs` takes.
+    """
+    return tuple(dict.fromkeys(condition for definition in own for condition in _conditions(definition)))
+
+
+def _conditions(definition: Definition) -> Iterator[Definition]:
+    program = ProgramText(definition.text).read()
+    (output,) = program.outputs
+    for number, line in enumerate(program.lines):
+        if line.op not in ("lt", "le", "abs"):
+            continue
+        a, b = (*line.args, 0.0)[:2]
+        lines = (*program.lines[:number], Line(output, "sub", (a, b)))
+        difference = Program(program.inputs, lines, (output,), {output: Note("1", "", "")})
+        difference = keep_outputs(optimise(difference), (output,))
+        if difference.inputs:
+            text = write_function(difference, "own", f"A condition of {definition.name}.")
+            name = f"{definition.name}_condition_{number}"
+            yield Definition(name, definition.expression, "1", "", (), text)

@@ -10,12 +10,12 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from ..support.forks import IMPORTS
+from ..support.lazy import np
 from ..support.shown import shown
 from .inputs import INPUTS, Input, is_beyond, limit_of
 from .messages import named
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from ..units.system import Conversion
@@ -57,9 +57,6 @@ def read(
 
 def read_array(row: Input, value: Any, system: "UnitSystem | None" = None) -> "NDArray[np.float64]":
     """Real numbers as a float64 array in the row's unit; TypeError that names the row for anything else."""
-    with IMPORTS:
-        import numpy as np
-
     graph = getattr(value, "__dask_graph__", None)
     if graph is not None and graph() is not None:
         remedy = f"give {row.name}.compute(), or grid(..., chunks=) for lazy values"

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
-from ..definitions.conditions import conditions_of
 from ..evaluation.arrays import are_good
 from ..loads.along_motion import SPEEDS, OfMotion, with_derivatives
 from ..loads.angles import cycle
@@ -18,7 +17,7 @@ from ..mechanism.catalogue import has, of_design, quantity
 from ..mechanism.constants import constants
 from ..mechanism.names import LENGTHS, STATUS, sensitivity
 from ..mechanism.own import Register, register, using
-from ..mechanism.own_lines import has_kinks
+from ..mechanism.own_lines import conditions_of, has_kinks
 from ..runtime.executor import have_wide_margins
 from ..runtime.kernels import STRUCTURAL_ZEROS
 from ..runtime.request import Request, accuracy_of, is_steady, request

@@ -9,6 +9,7 @@ roots          one root of a function
 panels         functions as polynomials on panels: integrals, roots, extremes
 progress       how far long work is, and a bar on the terminal
 version        the version of this installation
+lazy           NumPy, imported when it is first used
 forks          locks and threads that a forked process must not inherit
 signals        what handlers of signals raise, put off until a block is done
 interrupts     long compiled work, which an interrupt or a time limit stops

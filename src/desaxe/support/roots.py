@@ -4,7 +4,7 @@ from collections.abc import Callable
 from math import copysign, ulp
 from typing import Any
 
-from .forks import IMPORTS
+from .lazy import np
 
 STEPS = 200
 
@@ -47,9 +47,6 @@ def roots(function: Callable[[Any], Any], a: Any, b: Any, fa: Any, fb: Any) -> A
 
     fa, fb   the function there; where their signs are the same, any number is returned
     """
-    with IMPORTS:
-        import numpy as np
-
     c, fc = a, fa
     fraction: Any = 0.5
     with np.errstate(all="ignore"):
@@ -82,9 +79,6 @@ def sign_changes(function: Callable[[Any, Any], Any], nodes: Any) -> Any:
     function  of flat arrays: rows of the nodes, and a place in each
     nodes     a row for each function, ascending
     """
-    with IMPORTS:
-        import numpy as np
-
     count, width = nodes.shape
     values = function(np.repeat(np.arange(count), width), nodes.reshape(-1)).reshape(nodes.shape)
     row, k = np.nonzero(np.diff(values > 0.0, axis=1) & np.isfinite(values[:, 1:] + values[:, :-1]))

@@ -4,7 +4,7 @@ from fractions import Fraction
 from math import isfinite
 from typing import Any
 
-from ..support.forks import IMPORTS
+from ..support.lazy import np
 
 _DECIMALS = (6, 12)  # of the elements of arrays that are taken as written
 
@@ -16,9 +16,6 @@ def by_digits(value: Any, factor: Fraction) -> Any:
     """
     if isinstance(value, (int, float)):
         return float(Fraction(repr(float(value))) * factor) if isfinite(value) else float(value)
-    with IMPORTS:
-        import numpy as np
-
     array = np.asarray(value, dtype=np.float64)
     result, left = scaled(array, factor), np.isfinite(array)
     for decimals in _DECIMALS:
@@ -39,9 +36,6 @@ def scaled(value: Any, factor: Fraction) -> Any:
     """
     if isinstance(value, (int, float)):
         return float(Fraction(value) * factor) if isfinite(value) else float(value)
-    with IMPORTS:
-        import numpy as np
-
     array, high = np.asarray(value, dtype=np.float64), float(factor)
     with np.errstate(over="ignore", invalid="ignore"):
         product = array * high

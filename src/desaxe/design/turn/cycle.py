@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...definitions.conditions import conditions_of
 from ...evaluation.arrays import are_good, as_array, broadcast_shape
 from ...evaluation.evaluate import evaluate
 from ...evaluation.under_loads.loaded import loads_of
@@ -26,6 +25,7 @@ from ...mechanism.catalogue import has
 from ...mechanism.closed.angles import dead_centres, repeated
 from ...mechanism.names import LENGTHS, sensitivity
 from ...mechanism.own import used_by, using
+from ...mechanism.own_lines import conditions_of
 from ...runtime.request import as_number, request
 from ...support.computed import computed_once
 from ...support.panels import WIDEST, Array, Panels, resolved

@@ -18,7 +18,7 @@ from ...mechanism.names import LENGTHS, STATUS
 from ...mechanism.own import Register
 from ...runtime.point import point_of
 from ...runtime.request import Request, request
-from ...support.forks import IMPORTS
+from ...support.lazy import np
 
 MOTION = ("theta", *LENGTHS, "omega0", "alpha", "omega")  # inputs that every request has, if only as None
 
@@ -176,7 +176,4 @@ def _finite_or_zero(value: Any) -> Any:
     """The load with NaN replaced by 0: a point without motion has NaN and a status of its own."""
     if isinstance(value, float):
         return value if value - value == 0.0 else 0.0
-    with IMPORTS:
-        import numpy as np
-
     return np.nan_to_num(value, nan=0.0, posinf=0.0, neginf=0.0)

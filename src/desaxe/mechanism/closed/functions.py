@@ -4,11 +4,13 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
+from ...compiler.languages.arrays import compile_arrays
+from ...compiler.languages.python import compile_python
 from ...compiler.passes.pipeline import optimise
 from ...compiler.passes.slicing import keep_outputs
 from ...compiler.text import read_function
 from ...support.computed import computed_once
-from ...support.forks import IMPORTS
+from ...support.lazy import np
 
 
 class ClosedForm:
@@ -21,19 +23,11 @@ class ClosedForm:
     @computed_once
     def point(self) -> Callable[..., tuple[Any, ...]]:
         """The outputs from numbers: a square root below 0 is NaN, a number over 0 infinite."""
-        with IMPORTS:
-            from ...compiler.languages.python import compile_python
-
         return compile_python(self.program)
 
     @computed_once
     def arrays(self) -> Callable[..., tuple[Any, ...]]:
         """The outputs from arrays that broadcast, by NumPy."""
-        with IMPORTS:
-            import numpy as np
-
-            from ...compiler.languages.arrays import compile_arrays
-
         return np.errstate(all="ignore")(compile_arrays(self.program, np))
 
 
