@@ -178,7 +178,7 @@ class Expression:
         return self._tokens[self._at][0] if self._at < len(self._tokens) else ""
 
     def _value(self, least: int = 0) -> Value:
-        """What is next, up to an operator that binds no tighter than `least`."""
+        """The part that is next, up to an operator that binds no tighter than `least`."""
         left = self._operand()
         while _BINDING.get(sign := self._sign, 0) > least:
             self._at += 1
