@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from mpmath import mp
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 import desaxe as dx
-from tests.crankshaft.test_sums import crankshaft, truth
+from tests.crankshaft.test_sums import CYLINDER, SHAFTS, crankshaft, truth
+from tests.crankshaft.truth import torque_with_friction
 
 TORQUE, T_END, SPEED = 60.0, 0.02, 130.0
 STARTS = {"theta0": 0.3, "omega_start": SPEED, "torque": TORQUE}
@@ -34,21 +36,79 @@ def test_the_motion_is_that_of_the_free_bodies():
     assert motion["T_in"][0] == pytest.approx(TORQUE, rel=1e-10)
 
 
+MU, FORCE = 0.12, -300.0
+RUBBING = dx.Crankshaft(
+    dx.Machine(**CYLINDER, mu=MU, F_Y=FORCE), phase=SHAFTS["V"][1], bank=SHAFTS["V"][2], I_shaft=0.02
+)
+
+
+def with_friction(theta, omega, torque):
+    """The acceleration of RUBBING by free bodies."""
+    lags = np.add(*SHAFTS["V"][1:3])
+
+    def excess(alpha):
+        own = (torque_with_friction(CYLINDER, MU, FORCE, theta - lag, omega, alpha) for lag in lags)
+        return 0.02 * alpha + sum(own) - torque
+
+    return brentq(excess, -1e7, 1e7, xtol=1e-9, rtol=1e-14)
+
+
+def test_a_motion_with_friction_is_that_of_the_free_bodies():
+    result = solve_ivp(
+        lambda t, y: [y[1], with_friction(*y, TORQUE)], (0.0, T_END), [0.3, 40.0], "DOP853",
+        rtol=1e-11, atol=1e-11,
+    )  # fmt: skip
+    how = {"theta0": 0.3, "omega_start": 40.0, "rtol": 1e-12}
+    motion = RUBBING.simulate(**how, torque=TORQUE, t_end=T_END, times=[T_END], names=["T_in"])
+    assert [motion["theta"][0], motion["omega"][0]] == pytest.approx(result.y[:, -1], rel=1e-8)
+    assert motion["T_in"][0] == pytest.approx(TORQUE, rel=1e-10)
+    still = RUBBING.simulate(**how, torque=0.0, t_end=5.0, names=["T_in"])
+    assert "at rest from t" in still["message"]
+    theta = still["theta"][-1]
+    assert with_friction(theta, 1e-9, 0.0) < 0.0 < with_friction(theta, -1e-9, 0.0)
+    back = RUBBING.simulate(**how, torque=-TORQUE, t_end=0.1)
+    assert [event.kind for event in back["events"]] == ["standstill"]
+    assert back["alpha"][-1] == pytest.approx(
+        with_friction(back["theta"][-1], back["omega"][-1], -TORQUE), rel=1e-9
+    )
+
+
+def test_a_limit_angle_of_one_slider_ends_the_motion():
+    """S = 0 of slider 1 at ec + AB sin(theta - firing) = BC; derivatives by differences."""
+    one = dx.Machine(ec=0.01, AB=0.1, BC=0.07, m_slider=0.4, I_crank=1e-3, g_Y=-9.81)
+    two = dx.Crankshaft([one, one.replace(BC=0.08)], phase=[0.3, 0.0], bank=[0.1, 0.0])
+    how = {"torque": 0.5, "theta0": 0.2, "omega_start": 1.0, "t_end": 5.0, "rtol": 1e-12}
+    backwards = two.simulate(**how | {"omega_start": -8.0, "torque": -0.5})
+    assert backwards["theta"][-1] == pytest.approx(0.4 - np.arcsin(0.8), rel=1e-9)
+    exact = two.simulate(**how, wrt=["AB", "BC[1]", "BC[0]", "phase[1]"])
+    assert exact["status"] == 2
+    assert exact["theta"][-1] == pytest.approx(np.arcsin(0.7), rel=1e-12)
+    for parameter, value in (("AB", 0.1), ("BC[1]", 0.08), ("BC[0]", 0.07), ("phase[1]", 0.0)):
+        ends = [two.replace(**{parameter: value + h}).simulate(**how)["t_last"] for h in (1e-6, -1e-6)]
+        assert exact[f"t_last_wrt_{parameter}"] == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-6)
+
+
 PARAMETERS = {
     "AB": 0.045, "AB[1]": 0.045, "m_slider[0]": 0.4, "phase[1]": 0.4, "bank[2]": 0.8, "I_shaft": 0.02,
     "g_Y": -9.81, "m_slider": 0.4, "theta0": 0.3, "omega_start": SPEED, "torque": TORQUE,
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("step", [False, True])
-def test_derivatives_of_a_motion(step):
+OF_SPEED = dx.damper(50.0) + dx.over_V([-3, 0, 3], [40, 0, -90])
+KINDS = {
+    "gas": {}, "jumps": {"F_Y": dx.over_theta([0.0, 1.2, 3.5], [0.0, -800.0, 0.0], "step")},
+    "of the speed": {"F_Y": OF_SPEED}, "friction": {"F_Y": -300.0, "mu": MU},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_derivatives_of_a_motion(kind):
     """Differences of motions; with a load that jumps the jumps move with phases."""
-    shaft = crankshaft("V")
-    if step:
-        shaft = shaft.replace(F_Y=dx.over_theta([0.0, 1.2, 3.5], [0.0, -800.0, 0.0], "step"))
+    shaft = crankshaft("V").replace(**KINDS[kind])
     how = {"t_end": T_END, "times": [T_END], "rtol": 1e-13}
-    exact = shaft.simulate(**STARTS, **how, wrt=[*PARAMETERS])
-    for parameter, value in PARAMETERS.items():
+    parameters = PARAMETERS | ({"mu": MU, "mu[1]": MU} if kind == "friction" else {})
+    exact = shaft.simulate(**STARTS, **how, wrt=[*parameters])
+    for parameter, value in parameters.items():
         h = 1e-5 * abs(value)
         ends = []
         for side in (1, -1):
@@ -66,8 +126,8 @@ def test_derivatives_of_a_motion(step):
 @pytest.mark.parametrize(
     ("changes", "call", "message"),
     [
-        ({"mu": 0.1}, {}, "without friction: mu = 0"),
-        ({"BC": 0.04}, {}, "margin > 0"),
+        ({"BC": 0.04}, {}, "slider 0, under theta - firing.0.: theta0 = .*cannot be assembled"),
+        ({"F_Y": OF_SPEED}, {"wrt": "F_Y.linear"}, "wrt: no parameter 'F_Y.linear'"),
         ({}, {"torque": lambda V_C: -V_C}, "torque: of several sliders"),
         ({}, {"wrt": "AB[7]"}, "wrt: no parameter 'AB\\[7\\]'"),
     ],
@@ -80,23 +140,31 @@ def test_motions_that_are_refused(changes, call, message):
 MOTOR = dx.over_omega([0.0, 100.0, 200.0], [120.0, 90.0, -20.0])
 
 
-def test_the_steady_state_repeats_and_obeys_the_free_bodies():
-    shaft = crankshaft("V")
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "jumps"])
+def test_the_steady_state_repeats(kind):
+    shaft = crankshaft("V").replace(**KINDS[kind])
     steady = shaft.steady(torque=MOTOR)
     assert steady["status"] == 0
-    assert steady["theta"][-1] - steady["theta"][0] == pytest.approx(4.0 * np.pi, rel=1e-9)
-    for k in range(0, len(steady["theta"]), len(steady["theta"]) // 5):
+    turn = steady["theta"][-1] - steady["theta"][0]
+    assert turn == pytest.approx((4.0 if kind == "gas" else 2.0) * np.pi, rel=1e-9)
+    for k in range(0, len(steady["theta"]), len(steady["theta"]) // (5 if kind == "gas" else 2)):
         theta, omega = steady["theta"][k], steady["omega"][k]
         start = {"theta0": theta, "omega_start": omega, "torque": MOTOR}
         motion = shaft.simulate(**start, t_end=steady["period"], times=[steady["period"]], rtol=1e-12)
         assert motion["omega"][0] == pytest.approx(omega, rel=1e-8)
-        assert motion["theta"][0] == pytest.approx(theta + 4.0 * np.pi, rel=1e-8)
+        assert motion["theta"][0] == pytest.approx(theta + turn, rel=1e-8)
 
 
-@pytest.mark.parametrize("parameter", ["AB", "phase[1]", "m_slider"])
-def test_derivatives_of_a_steady_state(parameter):
-    shaft, h = crankshaft("V"), 1e-5 * PARAMETERS[parameter]
-    ends = [shaft.replace(**{parameter: PARAMETERS[parameter] + s * h}).steady(torque=MOTOR) for s in (1, -1)]
+@pytest.mark.parametrize(
+    ("kind", "parameter", "value"),
+    [
+        ("gas", "AB", 0.045), ("gas", "phase[1]", 0.4), ("gas", "m_slider", 0.4),
+        ("friction", "mu", MU), ("friction", "phase[1]", 0.4), ("of the speed", "AB", 0.045),
+    ],
+)  # fmt: skip
+def test_derivatives_of_a_steady_state(kind, parameter, value):
+    shaft, h = crankshaft("V").replace(**KINDS[kind]), 1e-5 * value
+    ends = [shaft.replace(**{parameter: value + s * h}).steady(torque=MOTOR) for s in (1, -1)]
     gradient = shaft.steady(torque=MOTOR)["gradient"]
     for name in ("omega_mean", "fluctuation", "power_mean"):
         slope = (ends[0][name] - ends[1][name]) / (2.0 * h)

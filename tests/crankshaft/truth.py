@@ -7,6 +7,7 @@ that is turned by its bank; rates are by differences with a third of the digits.
 from typing import Any, NamedTuple
 
 import mpmath
+import numpy as np
 from mpmath import mp, mpf
 
 DIGITS = 60
@@ -115,3 +116,31 @@ def _rates(values, h):
     first = (45 * (e - c) - 9 * (f - b) + (g - a)) / (60 * h)
     second = (2 * (a + g) - 27 * (b + f) + 270 * (c + e) - 490 * d) / (180 * h * h)
     return d, first, second
+
+
+def torque_with_friction(c, mu, force, theta, omega, alpha):
+    """The torque on one crank with friction of the guide in doubles, by the balance of each body."""
+    out = np.exp(1j * theta)
+    B = c["AB"] * out
+    psi = np.arcsin(-(c["ec"] + B.imag) / c["BC"])
+    rod = c["BC"] * np.exp(1j * psi)
+    w = -B.real * omega / rod.real
+    b = (w * w * np.sin(psi) - (B.real * alpha - B.imag * omega**2) / c["BC"]) / np.cos(psi)
+    a_B, of_rod = B * (1j * alpha - omega**2), 1j * b - w * w
+    along, way = (a_B + rod * of_rod).real, np.sign((1j * omega * B + 1j * w * rod).real)
+    centre = c["r_rod"] / c["BC"] * rod
+    turned = c["m_rod"] * (a_B + centre * of_rod)
+    turns = c["I_rod"] * b + _moment_of(centre, turned)  # about the crank pin
+    push = c["m_slider"] * along - force
+    for side in (1.0, -1.0):
+        N = (turns - rod.imag * push) / (rod.real + rod.imag * mu * side * way)
+        if side * N >= 0.0:
+            break
+    on_slider = push + mu * abs(N) * way - 1j * N
+    crank = c["r_crank"] * out
+    inertia = c["m_crank"] * crank * (1j * alpha - omega**2)
+    return c["I_crank"] * alpha + _moment_of(crank, inertia) + _moment_of(B, turned + on_slider)
+
+
+def _moment_of(r, force):
+    return r.real * force.imag - r.imag * force.real

@@ -85,11 +85,6 @@ class Sliders(SliderSums):
         """`desaxe.simulate` of the shaft."""
         here = self.replaced({n: v for n, v in inputs.items() if v is not None})
         turn = ShaftTurn("simulate", here, {})
-        if turn.has_friction or turn.margin <= 0.0:
-            raise ValueError("simulate: the crank of several sliders turns fully, without friction: "
-                             + ("mu = 0" if turn.has_friction else "margin > 0"))  # fmt: skip
-        if ask.wrt and here.follows_speed:
-            raise ValueError("wrt: several sliders under loads that depend on the speed have no derivatives")
         if follows_the_slider(starts["torque"]):
             raise TypeError("torque: of several sliders; a function is of t, theta, omega")
         drive = drive_of(starts["torque"], None, None, ask.deadline, ask.derivative)
@@ -101,7 +96,7 @@ class Sliders(SliderSums):
         def moves(theta: float) -> dict[str, float]:
             return {p: float(shift[0]) for p, shift in turn.moves(["T_in"], np.array([theta])).items()}
 
-        model = ShaftModel(here, drive.torque, moves, ask.deadline)
+        model = ShaftModel(here, start[0], drive.torque, moves, ask.deadline)
         check_inertia(model, start[0])
         with using(self.definitions):
             return in_time(ask, model, start, times, {"sliders": here}, {})

@@ -13,7 +13,6 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from ..evaluation.evaluate import Values, evaluate
-from ..loads.along_motion import OfMotion
 from ..loads.resolve import split
 from ..mechanism.catalogue import has, quantity
 from ..mechanism.inputs import INPUTS, row_of
@@ -178,11 +177,12 @@ class SliderSums:
                 result[name] = g
         return result
 
-    @property
-    def follows_speed(self) -> bool:
-        """True if a load of a slider depends on how fast the crank turns."""
-        loads = [load for inputs in self.inputs_of_each() for load in split(inputs)[1].values()]
-        return any(isinstance(load, OfMotion) and load.follows_speed for load in loads)
+    def without_speed(self) -> Self | None:
+        """The sliders without the loads that depend on how fast the crank turns; None if there is no such."""
+        loads = [split(member.inputs)[1] for member in self.members]
+        every = {f"{n}[{k}]": load for k, row in enumerate(loads) for n, load in row.items()}
+        free = {n: 0.0 for n, load in every.items() if load.follows_speed}
+        return self.replaced(free) if free else None
 
     def inputs_of_each(self) -> list[dict[str, Any]]:
         """The inputs of all sliders in their frames."""
@@ -210,7 +210,7 @@ class SliderSums:
             angles = {"phase": member.phase, "bank": member.bank}
             result |= {f"{name}[{k}]": value for name, value in {**member.inputs, **angles}.items()}
             result |= {n: v for n, v in member.inputs.items() if n != "branch"}
-        return result
+        return {n: v for n, v in result.items() if not callable(v)}
 
     @staticmethod
     def _gravity_along(bank: Any) -> dict[str, dict[str, Any]]:

@@ -144,7 +144,7 @@ class AngleCurve(Curve):
         if self.load.has_slope:
             return Slopes(*self.load.both(theta))
         value = self.at(t, theta, omega) if value is None else value
-        return Slopes(value, _difference(lambda x: self.at(t, x, omega), theta, 1.0, value))
+        return Slopes(value, difference(lambda x: self.at(t, x, omega), theta, 1.0, value))
 
     def ahead(self, theta: float, omega: float, direction: float, growing: float = 1.0) -> Curve:
         """The piece ahead of an angle."""
@@ -307,10 +307,10 @@ class FunctionCurve(Curve):
         if self.derivative is not None:
             return Slopes(value, *self.derivative.at(t, theta, omega))
         if roles - {"t", "omega"}:
-            by_theta = _difference(lambda x: self.at(t, x, omega), theta, 1.0, value)
+            by_theta = difference(lambda x: self.at(t, x, omega), theta, 1.0, value)
         if roles & {"omega", "V_C"}:
             size = float(np.max(np.abs(omega)))
-            by_omega = _difference(lambda x: self.at(t, theta, x), omega, size, value)
+            by_omega = difference(lambda x: self.at(t, theta, x), omega, size, value)
         return Slopes(value, by_theta, by_omega)
 
     def by_time(self, t: float, theta: float, omega: float) -> float:
@@ -411,7 +411,7 @@ def _zero_in(load: Load, lengths: tuple[float, ...], branch: int) -> float:
     return zero
 
 
-def _difference(function: Callable[[Any], Any], x: Any, size: float, value: Any) -> Any:
+def difference(function: Callable[[Any], Any], x: Any, size: float, value: Any) -> Any:
     """A forward difference, good enough for an iteration; size: of what x is measured by."""
     step = STEP * (size or 1.0)
     return (function(x + step) - value) / step

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from functools import lru_cache
-from math import isnan
+from math import copysign, cos, isnan, nan, sin
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -60,6 +60,7 @@ class Actuation(NamedTuple):
         return Actuation(*(curve.ahead(theta, omega, direction, growing) for curve in self))
 
 
+CHANGE_POINT = 1e-6  # of the crank: so nearly across the guide a limit angle has no derivative
 KEPT = ("AB", "BC", *CENTRES)  # inputs that are passed where they are 0, too
 NOTHING = Actuation(ConstantCurve(0.0), ConstantCurve(0.0), ConstantCurve(0.0))
 
@@ -122,6 +123,19 @@ class Model(SliderDesign):
     def lengths(self) -> tuple[float, ...]:
         """Eccentricity, crank and rod [m]."""
         return tuple(self.values[name] for name in LENGTHS)
+
+    @property
+    def friction(self) -> float | None:
+        """The coefficient of friction; None where sliders have their own."""
+        return self.mu
+
+    def limit(self, theta: float) -> dict[str, float]:
+        """The shift of a limit angle, at which ec + AB sin(theta) = BC or -BC; NaN at a change point."""
+        ec, AB, _ = self.lengths
+        side, arm = copysign(1.0, ec + AB * sin(theta)), AB * cos(theta)
+        if abs(arm) <= CHANGE_POINT * AB:
+            return dict.fromkeys(LENGTHS, nan)
+        return {"ec": -1.0 / arm, "AB": -sin(theta) / arm, "BC": side / arm}
 
     def inertia(self, theta: Any) -> Any:
         """The effective moment of inertia [kg m^2]."""

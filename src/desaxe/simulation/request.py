@@ -7,7 +7,7 @@ import numpy as np
 
 from ..support.deadline import Deadline
 from ..support.forks import IMPORTS
-from .checks import design_values, drive_of, model_of, scalar
+from .checks import check_inertia, design_values, drive_of, model_of, scalar
 from .drive import LOADED
 from .history import FORCES, integrated
 from .march import March, Settings
@@ -37,6 +37,7 @@ def one_motion(ask: Ask, inputs: Mapping[str, Any], starts: Mapping[str, Any], t
     drive = drive_of(torque, inputs["F_X"], inputs["F_Y"], ask.deadline, ask.derivative)
     values = design_values(inputs)
     model = model_of(values, ask.branch, start[0], drive)
+    check_inertia(model, start[0])
     known: dict[str, Any] = {**values, "branch": ask.branch}
     kept = zip(FORCES, drive[1:], strict=True)
     curves = {n: c.load for n, c in kept if isinstance(c, LOADED)}

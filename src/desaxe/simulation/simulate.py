@@ -75,7 +75,7 @@ def simulate(
     max_steps    more panels than this are a failure
     timeout      seconds of computing, None for no limit: then one motion ends with status 4 and what there is
                  of it, and many designs with a TimeoutError
-    sliders      filled in by a `Crankshaft` that turns fully, without friction; torque is of t, theta, omega
+    sliders      filled in by a `Crankshaft`, whose torque is of t, theta, omega
     threads      for many designs: how many threads share them, all there are without
 
     Returns a dict that shows itself on one screen:

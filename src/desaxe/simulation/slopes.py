@@ -212,7 +212,7 @@ class MotionSlopes:
         middle = np.array([0.5 * (after.start + after.stop)])
         direction = copysign(BARELY, self.motion.at(middle)[1][V, 0])
         names = [f"T_in_wrt_{p}" for p in ("theta", *self.tangents.of_design)]
-        known = self.tangents.values(names, event.theta, direction, mu=self.run.model.mu)
+        known = self.tangents.values(names, event.theta, direction, mu=self.run.model.friction)
         t, angle, omega = (np.array([number]) for number in (event.t, event.theta, 0.0))
         by_theta = np.ravel(torque.slopes(t, angle, omega).theta)[0] - known["T_in_wrt_theta"]
         pushes = [float(p == "torque") - known.get(f"T_in_wrt_{p}", 0.0) for p in self.wrt]

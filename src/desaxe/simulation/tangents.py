@@ -9,7 +9,6 @@ with s the product of the signs of N and of the slider's velocity (paper C, link
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from math import copysign, cos, nan, sin
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,14 +17,14 @@ from numpy.typing import NDArray
 from ..evaluation.evaluate import evaluate
 from ..loads.along_motion import OfMotion
 from ..mechanism.catalogue import has
-from ..mechanism.names import LENGTHS, sensitivity
+from ..mechanism.names import sensitivity
 from .drive import Slopes
+from .law import Law
 from .model import Model
 
 Array = NDArray[np.float64]
 STARTS = ("theta0", "omega_start")
 CREEP = 1e-100  # rad/s: a load knows the direction of the crank, inertia does not act
-CHANGE_POINT = 1e-6  # of the crank: so nearly across the guide a limit angle has no derivative
 
 
 class Tangents:
@@ -38,6 +37,9 @@ class Tangents:
         self.model, self.wrt, self.inputs = model, tuple(wrt), inputs
         follow = {n: a for n, a in inputs.items() if isinstance(a, OfMotion) and a.follows_speed}
         self.still = {**inputs, **dict.fromkeys(follow, 0.0)} if follow else None
+        self.several = "sliders" in inputs  # whose sums have derivatives by every input
+        if self.several and (still := inputs["sliders"].without_speed()):
+            self.still = {"sliders": still}
         self.of_design = [p for p in wrt if p not in (*STARTS, "torque")]
         arc = model.coordinate
         self.of_limits = [self.limit(end) for end in (arc.first, arc.last)] if arc.half else []
@@ -51,12 +53,8 @@ class Tangents:
         return np.array([slopes.get(p, 0.0) for p in self.wrt])
 
     def limit(self, theta: float) -> Array:
-        """The shift of a limit angle, at which ec + AB sin(theta) = BC or -BC; NaN at a change point."""
-        ec, AB, _ = self.model.lengths
-        side, arm = copysign(1.0, ec + AB * sin(theta)), AB * cos(theta)
-        if abs(arm) <= CHANGE_POINT * AB:
-            return self.by_lengths(dict.fromkeys(LENGTHS, nan))
-        return self.by_lengths({"ec": -1.0 / arm, "AB": -sin(theta) / arm, "BC": side / arm})
+        """The shift of a limit angle."""
+        return self.by_lengths(self.model.limit(theta))
 
     def values(
         self,
@@ -64,7 +62,7 @@ class Tangents:
         theta: Any,
         omega: Any = CREEP,
         alpha: Any = 0.0,
-        mu: float = 0.0,
+        mu: float | None = 0.0,
         still: bool = False,
     ) -> dict[str, Array]:
         """Quantities along the motion; loads see the direction of the crank, at rest too.
@@ -84,9 +82,8 @@ class Tangents:
 
     def _names(self, name: str, *state: str) -> list[str]:
         """A quantity and its derivatives by these variables of the state and by the inputs."""
-        slopes = [sensitivity(name, p) for p in ("theta", *state, *self.of_design) if p != "mu"]
-        several = "sliders" in self.inputs  # whose sums have derivatives by every input
-        return [name, *(slope for slope in slopes if several or has(slope.partition(".")[0], True))]
+        slopes = [sensitivity(name, p) for p in ("theta", *state, *self.of_design) if not _is_mu(p)]
+        return [name, *(slope for slope in slopes if self.several or has(slope.partition(".")[0], True))]
 
     def _rows(self, name: str, known: Mapping[str, Array], by_theta: Array, by_omega: Any = None) -> Array:
         """The derivatives of a quantity, from those of angle and speed."""
@@ -153,9 +150,12 @@ class Tangents:
                 moving = self.values(self._names("T_in", "omega"), theta, omega, still=still)
                 push = push - sign * moving["T_in"]
                 of_push = of_push - sign * self._rows("T_in", moving, by_theta, by_omega)
-        if self.model.mu or "mu" in self.wrt:
+        if self.model.friction != 0.0 or "mu" in self.wrt:
             state = _State(theta, omega, by_theta, by_omega)
-            taken, of_taken = self._friction(state, inertia, torque.value, of_torque, signs)
+            if self.several:
+                taken, of_taken = self._of_guides(state, t, of_torque)
+            else:
+                taken, of_taken = self._friction(state, inertia, torque.value, of_torque, signs)
             push, of_push = push - taken, of_push - of_taken
         return np.stack([(by_omega - omega * bent / slope) / slope, (of_push - push * log) / root])
 
@@ -185,11 +185,31 @@ class Tangents:
         of_alpha = (of_alpha - of_arm * known["N_C"] - arm * of_normal) / (inertia + arm * by_alpha)
         return arm * known["N_C"], of_arm * known["N_C"] + arm * (of_normal + by_alpha * of_alpha)
 
+    def _of_guides(self, state: "_State", t: Array, of_torque: Array) -> tuple[Array, Array]:
+        """What the guides of several sliders take: the torque with friction without that without it."""
+        theta, omega, *by_state = state
+        alpha = Law(self.model, self.model.drive).alpha(t, theta, omega)
+        names = self._names("T_in", "omega", "alpha")
+        of_mu = {k: f"T_in_wrt_{p}" for k, p in enumerate(self.wrt, 2) if _is_mu(p)}
+        there = self.values([*names, *of_mu.values()], theta, omega, alpha, mu=None)
+        free = self.values(names, theta, omega, alpha)
+        of_there = self._rows("T_in", there, *by_state)
+        for k, name in of_mu.items():
+            of_there[k] = there[name]
+        of_alpha = (of_torque - of_there) / there["T_in_wrt_alpha"]
+        more = (there["T_in_wrt_alpha"] - free["T_in_wrt_alpha"]) * of_alpha
+        return there["T_in"] - free["T_in"], of_there - self._rows("T_in", free, *by_state) + more
+
     def energy(self, q: Any, v: Any, y: Array) -> Array:
         """The derivatives of the energy by the parameters at a fixed time; y: those of q and v."""
         theta, by_theta, _ = self.angles(q)
         rows = self._rows("potential_energy", self.values(self._names("potential_energy"), theta), by_theta)
         return np.asarray(rows[0] * y[0] + v * y[1] + rows[2:])
+
+
+def _is_mu(parameter: str) -> bool:
+    """True for the friction of a guide, or of a slider's."""
+    return parameter.partition("[")[0] == "mu"
 
 
 class _State(NamedTuple):

@@ -31,6 +31,7 @@ Course = dict[str, Array]  # coefficients of the equation by name; see `course_o
 CREEP = 1e-100  # rad/s: loads know the way of turning, inertia does not act
 WIDEST = 0.65  # rad
 NOTHING = 1e-12  # of the inertia elsewhere
+SIDES, EXACT = 4, 1e-14  # steps of Newton's method for each guide; of an acceleration, the last one
 
 
 class DesignRows(NamedTuple):
@@ -76,7 +77,14 @@ class DesignRows(NamedTuple):
     @property
     def switches(self) -> bool:
         """True if kinks of a motion depend on its speed."""
-        return bool(self.source.knots or self.speeds) or self.has_friction
+        return bool(self.source.knots or self.speeds) or self.has_friction or self.by_state
+
+    @property
+    def by_state(self) -> bool:
+        """True for several sliders of which friction or a load depends on how fast the crank turns."""
+        return self.turn is not None and (
+            self.turn.has_friction or self.turn.sliders.without_speed() is not None
+        )
 
     @property
     def following(self) -> dict[str, OfMotion]:
@@ -166,7 +174,7 @@ def course_of(designs: DesignRows, x: Array) -> Course:
     names = ["M_eff", "M_eff_wrt_theta", "T_in"]
     names += ["N_C", "N_C_wrt_alpha", "phi"] if friction else []
     names += ["Y_wrt_theta"] if friction or following else []
-    at = designs.values(names, x, **still, mu=None)
+    at = designs.values(names, x, **still, mu=None if designs.turn is None else 0.0)
     inertia, slope = at["M_eff"] + designs.each(designs.J, ndim), at["M_eff_wrt_theta"]
     course = {"theta": designs.theta(x), "inertia": inertia, "slope": slope, "load": at["T_in"]}
     free = {**dict.fromkeys(designs.loads, 0.0), "omega": 1.0, "alpha": 0.0, "mu": None}
@@ -205,6 +213,8 @@ class Rate(NamedTuple):
 
 def rate(designs: DesignRows, course: Course, E: Array) -> Rate:
     """The equation at an energy; NaN where that is not positive."""
+    if designs.by_state:
+        return _rate_by_state(designs, course, E)
     way, inertia = designs.each(designs.way, E.ndim), course["inertia"]
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         square = 2.0 * E / inertia
@@ -229,3 +239,38 @@ def rate(designs: DesignRows, course: Course, E: Array) -> Rate:
         rub = course["arm"] * pressed / (1.0 - wedge)
         by_E = 2.0 * course["square"] / inertia + course["push"] * steep + by_pressed * omega / (2.0 * E)
         return Rate(way * (push - rub * normal), way * (steep - rub * by_E), omega, torque, normal, wedge)
+
+
+def _rate_by_state(designs: DesignRows, course: Course, E: Array) -> Rate:
+    """The equation of several sliders by their torque at a state, which knows the side of each guide."""
+    way, inertia, slope = designs.each(designs.way, E.ndim), course["inertia"], course["slope"]
+    J, names = designs.each(designs.J, E.ndim), ["T_in", "T_in_wrt_alpha", "T_in_wrt_omega"]
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        x, omega = np.broadcast_arrays(way * course["theta"], way * np.sqrt(2.0 * E / inertia))
+        torque, by_omega = designs.torque(course["theta"], omega)
+        alpha = (torque - course["load"] - 0.5 * slope * omega**2) / inertia
+        for _ in range(SIDES * len(designs.turn.own)):  # linear but where a guide changes sides
+            at = designs.values(names, x, omega=omega, alpha=alpha)
+            mass = at["T_in_wrt_alpha"] + J
+            change = (torque - at["T_in"] - J * alpha) / mass
+            alpha = alpha + change
+            if not (np.abs(change) > EXACT * (np.abs(alpha) + omega**2)).any():
+                break
+        steep = (by_omega - at["T_in_wrt_omega"]) / mass
+        f = way * (inertia * alpha + 0.5 * slope * omega**2)
+        return Rate(f, way * (inertia * steep + slope * omega) / (inertia * omega), omega, torque)
+
+
+def kinks_of(designs: DesignRows, course: Course, here: Rate, x: Array) -> list[Array]:
+    """What changes its sign where friction or a load over the slider's speed has a kink."""
+    if not designs.by_state:
+        normal = [] if here.normal is None else [here.normal]
+        return [*(course["travel"] * here.omega - speed for speed in designs.speeds), *normal]
+    alpha = (here.f * designs.each(designs.way, x.ndim) - 0.5 * course["slope"] * here.omega**2) / course[
+        "inertia"
+    ]
+    marks = {f"V_C[{k}]": speeds_of(own.loads.values()) for k, own in enumerate(designs.turn.own)}
+    marks |= {f"N_C[{k}]": [0.0] for k, own in enumerate(designs.turn.own) if own.has_friction}
+    names = [name for name, values in marks.items() if values]
+    at = designs.values(names, x, omega=here.omega, alpha=alpha)
+    return [at[name] - value for name in names for value in marks[name]]

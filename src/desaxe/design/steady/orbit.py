@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...support.computed import computed_once
 from ...support.panels import NODES, RUNNING, TO_COEFFICIENTS, WEIGHT, Panels, padded
-from .designs import Course, DesignRows, Rate, course_of, picked, rate
+from .designs import Course, DesignRows, Rate, course_of, kinks_of, picked, rate
 
 Array = NDArray[Any]
 
@@ -117,11 +117,9 @@ class Orbit(NamedTuple):
     @property
     def switches(self) -> Array:
         """The places where it passes a knot of the motor or the guide changes sides, in padded rows."""
-        mesh, omega, course = self.mesh, self.rate.omega, self.course
-        marks = [mesh.roots(omega - knot) for knot in self.designs.source.knots]
-        marks += [mesh.roots(course["travel"] * omega - speed) for speed in self.designs.speeds]
-        if self.rate.normal is not None:
-            marks.append(mesh.roots(self.rate.normal))
+        mesh = self.mesh
+        marks = [mesh.roots(self.rate.omega - knot) for knot in self.designs.source.knots]
+        marks += map(mesh.roots, kinks_of(self.designs, self.course, self.rate, mesh.x))
         every = np.sort(np.concatenate([mesh.edges[:, :1], *marks], axis=1), axis=1)
         # Each side of an edge may find the root that is there.
         row, at = np.nonzero(np.diff(every, axis=1, prepend=-1.0) > MOVED)

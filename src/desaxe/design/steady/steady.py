@@ -45,7 +45,7 @@ def steady(
                       `over_theta`, or a number, which fixes a speed only where the guide has friction
     flywheel_inertia  added to the crank [kg m2]
     fluctuation       the smallest flywheel that keeps this one is found instead
-    sliders           filled in by a `Crankshaft`, without friction
+    sliders           filled in by a `Crankshaft`
     inputs            lengths, masses, loads as in `evaluate`; F_X and F_Y may vary with the motion, over up
                       to four turns. omega0 only says which way the crank turns, if the motor does not
 
@@ -136,8 +136,4 @@ def _of_sliders(sliders: Any, inputs: dict[str, Any]) -> tuple[dict[str, Any], A
     if sliders is None:
         return inputs, None
     turn = sliders.turn("steady", {n: v for n, v in inputs.items() if n not in SPEEDS})
-    if turn.has_friction:
-        raise ValueError("steady: of several sliders without friction, mu = 0")
-    if turn.sliders.follows_speed:
-        raise ValueError("steady: loads of several sliders must not depend on the speed")
     return {n: v for n, v in inputs.items() if n in SPEEDS}, turn
