@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.machine.scenes import _toml as toml
 from desaxe.scenes.schema import SceneError
+from desaxe.scenes.written import toml
 
 ENGINE = {"ec": 0.002, "AB": 0.04, "BC": 0.13, "omega0": 200.0, "m_slider": 0.5}
 BORE, AMBIENT = 0.083, 1e5

@@ -77,9 +77,9 @@ def test_a_machine_writes_the_motor_into_its_scene(tmp_path):
         press.to_scene(path, outputs="Y", steady={"torque": motor, "flywheel_inertia": 3})
         again = dx.scene(path)
         assert (
-            again.content.steady.torque
+            again.content.of("steady")[0].torque
             == motor
-            == press.scene("Y", steady={"torque": motor}).content.steady.torque
+            == press.scene("Y", steady={"torque": motor}).content.of("steady")[0].torque
         )
         result = again.run().steady.found
         own = press.steady(torque=motor, flywheel_inertia=3)["omega_mean"]
@@ -155,7 +155,7 @@ def test_what_is_wrong_is_named(steady, said):
 
 def test_speeds_of_the_motion_say_the_way_of_turning_alone():
     back = {**SCENE, "motion": {"omega0": [-50, -80]}, "steady": {"torque": -3}}
-    assert dx.scene(back).content.steady.fixed["omega0"] == -1.0
+    assert dx.scene(back).content.of("steady")[0].fixed["omega0"] == -1.0
     with pytest.raises(SceneError, match="both ways"):
         dx.scene({**back, "motion": {"omega0": [-50, 80]}})
     with pytest.raises(SceneError, match="alpha"):

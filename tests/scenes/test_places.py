@@ -10,6 +10,7 @@ import pytest
 import desaxe as dx
 from desaxe.cli.command import main
 from desaxe.scenes.command import run_scene
+from desaxe.scenes.parts import grid
 from desaxe.scenes.scene import NotWrittenError
 from tests.example_scenes import SMALL
 
@@ -45,11 +46,11 @@ def scene_file(data="out/a.csv", picture=None):
 
 @pytest.fixture
 def nothing_is_computed(monkeypatch):
-    def fail(*_):
+    def fail(*_, **__):
         raise AssertionError("something was computed")
 
-    monkeypatch.setattr("desaxe.scenes.scene.peaks_of", fail)
-    monkeypatch.setattr("desaxe.scenes.scene.values_of_grid", fail)
+    monkeypatch.setattr("desaxe.scenes.parts.peaks.peak", fail)
+    monkeypatch.setattr("desaxe.scenes.parts.grid.plan_of_grid", fail)
 
 
 @pytest.mark.parametrize("foreign", ["a.csv", "a_peak_absmax_a_C.csv", "a.png"])
@@ -160,7 +161,7 @@ def test_a_store_that_fails_costs_no_report(capsys, monkeypatch):
     def full(*_, **__):
         raise OSError(28, "No space left on device", "a.zarr/V_C/c/0/0")
 
-    monkeypatch.setattr("desaxe.scenes.scene.sweep_content", full)
+    monkeypatch.setattr("desaxe.scenes.parts.grid.sweep_content", full)
     Path("press.toml").write_text((TOML % "x").replace('data = "x"', 'store = "a.zarr"'))
     assert main(["run", "press.toml"]) == 2
     out, err = capsys.readouterr()
@@ -170,29 +171,25 @@ def test_a_store_that_fails_costs_no_report(capsys, monkeypatch):
 
 def test_a_folder_that_vanishes_is_made_again(monkeypatch):
     Path("out").mkdir()
-    from desaxe.scenes import scene as module
-
-    values = module.values_of_grid
+    values = grid.plan_of_grid
 
     def vanish(*arguments):
         Path("out").rmdir()
         return values(*arguments)
 
-    monkeypatch.setattr("desaxe.scenes.scene.values_of_grid", vanish)
+    monkeypatch.setattr("desaxe.scenes.parts.grid.plan_of_grid", vanish)
     assert main(["run", scene_file("out/a.csv")]) == 0
     assert Path("out/a.csv").is_file()
 
 
 def test_a_file_that_appears_meanwhile_stays(capsys, monkeypatch):
-    from desaxe.scenes import scene as module
-
-    values = module.values_of_grid
+    values = grid.plan_of_grid
 
     def appear(*arguments):
         Path("a.csv").write_text(FOREIGN)
         return values(*arguments)
 
-    monkeypatch.setattr("desaxe.scenes.scene.values_of_grid", appear)
+    monkeypatch.setattr("desaxe.scenes.parts.grid.plan_of_grid", appear)
     assert main(["run", scene_file("a.csv")]) == 2
     assert "Largest magnitude" in capsys.readouterr().out
     assert Path("a.csv").read_text() == FOREIGN

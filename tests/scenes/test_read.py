@@ -316,5 +316,5 @@ def test_a_whole_printed_number_has_no_decimals(units, text):
     """As its text has none: -7740 is printed to tens."""
     table = {"units": units, "outputs": ["Y"], "mechanism": {"ec": 0, "AB": "40 mm", "BC": "0.13 m"}}
     motion, check = {"theta": 1, "omega0": 100}, [{"printed": {"a_C": -7740}}]
-    checks = dx.scene({**table, "motion": motion, "check": check}).content.checks
+    checks = dx.scene({**table, "motion": motion, "check": check}).content.of("check")[0].checks
     assert (checks[0].printed.place, checks[0].printed.unit) == (1, text)

@@ -207,7 +207,7 @@ def test_progress(compactor):
     done, total, what = zip(*steps, strict=True)
     assert done == tuple(range(len(steps)))
     assert set(total) == {len(steps) - 1}
-    assert what[0] == "values"
+    assert "values" in what
     assert what[-1] == ""
 
 

@@ -248,7 +248,8 @@ def _motor(call: str, path: str, arguments: Mapping[str, Any], several: bool) ->
 
     if call not in ("steady", "simulate"):
         return {}
-    steady = (content_of_shaft(path)[0] if several else content_of_machine(path)).steady
+    content = content_of_shaft(path)[0] if several else content_of_machine(path)
+    steady = next(iter(content.of("steady")), None)
     if steady is None:
         return {}
     if call == "simulate" or any(name in arguments for name in ROWS):

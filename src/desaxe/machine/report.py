@@ -10,6 +10,7 @@ from ..definitions.tables import tables_of
 from ..mechanism.names import LOADS
 from ..mechanism.own import used_by, using
 from ..mechanism.slips import warn_of_slips
+from ..scenes.content import Sink
 from ..scenes.document.page import Page, checked, require_document, write_page
 from ..scenes.scene import compute, steps_of
 from ..support.files import as_path
@@ -35,9 +36,9 @@ def write_report(
         content, units = scene.content, scene.shown_in
         page = checked(page, content, units)
         with using(content.definitions):
-            steps = steps_of(content, watch)  # which a terminal shows after a second
-            steps.total += 1
-            run = compute(content, steps, page.overwrite)
+            steps = steps_of(content)
+            steps.watch, steps.total = watch, steps.total + 1
+            run = compute(content, Sink(steps, page.overwrite))
             own = [one for one in heard if one.category.__module__.startswith("desaxe.")]
             command = _command(machine, page.path, names, options, more)
             page = page._replace(command=command, warnings=tuple(str(one.message) for one in own))

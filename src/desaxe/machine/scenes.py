@@ -1,26 +1,23 @@
 """A machine from a scene, and a scene from a machine: as data, and as a TOML file."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from ..definitions.tables import tables_of
 from ..loads.angles import cycle
-from ..loads.motors import ROWS, Kloss, OverOmega
 from ..loads.resolve import split
 from ..mechanism.closed import TURN
 from ..mechanism.inputs import INPUTS
 from ..mechanism.own import Definition
 from ..mechanism.quantity_units import UnitSystem
 from ..scenes.content import Content
-from ..scenes.load_tables import load_table
 from ..scenes.scene import content_of_machine, scene
 from ..scenes.schema import SECTIONS
-from ..scenes.toml_text import key_text, value_text
+from ..scenes.written import load_table, motor_table, number_text, toml
 from ..support.version import version
 from ..support.written import UNSEALED, require_path, sealed, write_whole
-from ..units.parse import exact
 
 
 def is_scene(source: Mapping[str, Any]) -> bool:
@@ -61,7 +58,7 @@ def data_of(
     texts: dict[Path, str] = {}
     tables = {n: load_table(n, load, machine.units, path, texts) for n, load in split(machine)[1].items()}
     if "steady" in more:
-        more = {**more, "steady": {name: _motor_table(value) for name, value in more["steady"].items()}}
+        more = {**more, "steady": {name: motor_table(value) for name, value in more["steady"].items()}}
     return _data(machine, outputs, more, tables), texts
 
 
@@ -74,7 +71,7 @@ def write_scene(
     data, texts = data_of(machine, outputs, more, place)
     for file in (*texts, place):
         require_path(file, overwrite)
-    for file, text in {**texts, place: _toml(data)}.items():
+    for file, text in {**texts, place: toml(data)}.items():
         with write_whole(file, overwrite) as staged:
             marked = sealed(f"# desaxe {version()}, {UNSEALED}\n{text}")
             staged.write_text(marked, encoding="utf-8", newline="\n")
@@ -115,44 +112,5 @@ def _written(machine: Any, name: str) -> Any:
     value = machine[name]
     if name == "branch":
         return value
-    numbers = [_number(machine.units, name, float(part)) for part in getattr(value, "flat", [value])]
+    numbers = [number_text(machine.units, name, float(part)) for part in getattr(value, "flat", [value])]
     return numbers if hasattr(value, "tolist") else numbers[0]
-
-
-def _number(units: UnitSystem, name: str, value: float) -> float | str:
-    conversion = units.of(name)
-    if conversion.si == 1:
-        return value
-    text = f"{conversion.shown(value):.15g} {conversion.unit}"
-    return text if float(exact(name, text, INPUTS[name].unit)) == value else f"{value!r} {INPUTS[name].unit}"
-
-
-def _motor_table(motor: Any) -> Any:
-    """The data of a motor in a scene, in SI units with all its digits; anything else as it is."""
-    if isinstance(motor, OverOmega):
-        rows = zip(motor.table.knots, motor.table.values, strict=True)
-        return {"over_omega": [[f"{x!r} rad/s", f"{y!r} N m"] for x, y in rows], "kind": motor.kind}
-    if isinstance(motor, Kloss):
-        units = {row.name: "" if row.unit == "1" else f" {row.unit}" for row in ROWS}
-        return {"kloss": {name: f"{value!r}{units[name]}" for name, value in motor.numbers.items()}}
-    return motor
-
-
-# ---- TOML ----------------------------------------------------------------------------------------
-
-
-def _toml(data: Mapping[str, Any]) -> str:
-    """Plain data as TOML: values first, then tables, then lists of tables."""
-    lines = [f"{key} = {value_text(value)}" for key, value in data.items() if not _tables(value)]
-    for key, value in data.items():
-        head = f"[{key}]" if isinstance(value, Mapping) else f"[[{key}]]"
-        for table in _tables(value):
-            lines += ["", head, *(f"{key_text(name)} = {value_text(part)}" for name, part in table.items())]
-    return "\n".join(lines).lstrip("\n") + "\n"
-
-
-def _tables(value: Any) -> Sequence[Mapping[str, Any]]:
-    """The tables that a value is, or that are its items; none of any other value."""
-    every = [value] if isinstance(value, Mapping) else value
-    is_list = isinstance(every, (list, tuple)) and all(isinstance(part, Mapping) for part in every)
-    return every if is_list else ()

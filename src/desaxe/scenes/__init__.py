@@ -1,20 +1,16 @@
-"""Scenes: a mechanism, its motion and the requested quantities, as data.
+"""Scenes: a machine and a list of requests, as data.
 
-scene        `desaxe.scene`: Scene and SceneResult
-schema       the keys of a scene file, their types and what they mean
-json_schema  the schema for editors
-setting      the machine of a scene, and how all of its requests are computed
-content      the machine and its requests, checked and in SI units
-run          Content -> values, peaks, checks, then files
-report       the result as text
+scene        `desaxe.scene`: Scene and SceneResult; a run computes all answers, then writes the files
+schema       the keys of a scene file, their types and what they mean; the schema for editors
+content      the machine and its requests, checked and in SI units; plans and answers
+loads        loads and motors: one table of their keys
+written      a scene as text: numbers, loads, TOML
 command      `desaxe run`
-load_tables  a load as the table of a scene file
-toml_text    keys and values as TOML
 sweep        `desaxe.sweep`
 reading/     a file or mapping as Content
-parts/       its requests, each read, run and explained: grid, checks, peaks, steady states, pictures
+parts/       the requests, each from its table to its section of the report: grid, checks, peaks, ...
 stores/      what it writes, and where
-document/    the result as a page to hand on, HTML or Markdown
+document/    blocks of a report and their renderers; the page to hand on, HTML or Markdown
 explain/     what a scene will do before it does it
 export/      a scene as a module of its own
 explorer/    a scene as a page for the browser

@@ -1,35 +1,30 @@
-"""`scene`: a mechanism, its motion and its outputs, from a TOML file or a mapping."""
+"""`scene`: a mechanism, its motion and its outputs, from a TOML file or a mapping; its run and its report."""
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
 from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from ..evaluation.in_units import in_units
 from ..mechanism.messages import errors_in
 from ..mechanism.own import change, using
 from ..mechanism.quantity_units import SI, UnitSystem
 from ..support.progress import Progress, Steps, progress_bar
 from ..support.shown import printable
-from ..sweeps.request import RunOptions
-from .content import Content, Run
+from .content import Content, RequestAnswer, RequestPlan, Run, Sink
+from .document.blocks import Section, Text, TextTable
 from .document.page import Page, write_page
-from .document.results import files_text, results_text
-from .parts.grid import blocks_of, sweep_content, values_of_grid
-from .parts.motor import steady_of
-from .parts.peaks import Peak, peaks_of
-from .parts.pictures import draw
-from .parts.turning import feasibility_of
+from .document.render import terminal
 from .reading.read import plain_data, read
 from .reading.values import Value, units_written
 from .schema import SceneError as SceneError
-from .stores.files import require_modules, require_places, store_group, write
+from .stores.files import data_files, require_modules, require_places, store_group, write
 
 MOST_BATCHES = 1_000  # of peaks that a run shows beside a store
 FAILURES = (OSError, ValueError, RuntimeError, MemoryError)  # of a file that cannot be written
+Meter = Callable[[], AbstractContextManager[Progress | None]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,13 +104,11 @@ class Scene:
         Raises FileExistsError, ValueError or OSError, before anything is computed, for a place that
         cannot be written; NotWrittenError, which has the result, where writing failed after all.
         """
-        meter = progress_bar() if progress is None else nullcontext(progress)
-        with meter as watch, using(self.content.definitions), errors_in(self.shown_in):
-            steps = steps_of(self.content, watch)
-            found = compute(self.content, steps, overwrite)
-            found = write_files(self.content, found, steps, self.shown_in, overwrite)
-        result = SceneResult(scene=self, **vars(found))
-        if found.failures:
+        meter = progress_bar if progress is None else partial(nullcontext, progress)
+        with using(self.content.definitions), errors_in(self.shown_in):
+            run = run_content(self.content, self.shown_in, overwrite, meter)
+        result = SceneResult(scene=self, **vars(run))
+        if run.failures:
             raise NotWrittenError(result)
         return result
 
@@ -159,60 +152,57 @@ def _scene(source: str | PathLike[str] | Mapping[str, Any], alone: bool = False)
 # ---- the run: first all that it computes, then the files; one that fails takes nothing else with it
 
 
-def steps_of(content: Content, watch: Progress | None) -> Steps:
-    """The steps of a run, none of them done."""
-    stored = content.store is not None
-    blocks = blocks_of(content)[0] if content.outputs and not stored else 0
-    peaks = sum(one.batches for one in _shown_peaks(content))
-    files = len(content.pictures) + (content.data is not None) + (stored and content.steady is not None)
-    return Steps(blocks + stored + peaks + files + (content.steady is not None), watch)
-
-
-def _shown_peaks(content: Content) -> tuple[Peak, ...]:
-    """The peaks of the report; where they are too many for it, all of them are in the store."""
-    many = content.store is not None and sum(one.batches for one in content.peaks) > MOST_BATCHES
-    return () if many else content.peaks
-
-
-def compute(content: Content, steps: Steps, overwrite: bool) -> Run:
-    """Compute all that a scene asks for; nothing is written but its store."""
-    require_modules(content)
-    require_places(content, overwrite)
-    units = content.units
-    checks = tuple(check.run(content) for check in content.checks)
-    dataset: Any = None
-    failures: tuple[str, ...] = ()
-    if content.store is not None:
-        steps.next(f"sweeping into {content.store}")
-        try:  # the steps of the run are shown, not the points of the sweep
-            options = RunOptions(overwrite=overwrite, watch=lambda done, total, what: None)
-            dataset = sweep_content(content, options)
-        except FAILURES as error:
-            failures = (_failure(content.store, error),)
-    elif content.outputs:
-        dataset = in_units(values_of_grid(content, steps), units)
-    peaks = [peaks_of(one, content, steps) for one in _shown_peaks(content)]
-    steady = None
-    if content.steady is not None:
-        steps.next("steady state")
-        steady = steady_of(content.steady, content)
-        steady = steady._replace(dataset=in_units(steady.dataset, units))
-    converted = tuple(one._replace(dataset=in_units(one.dataset, units)) for one in peaks)
-    return Run(dataset, checks, converted, feasibility_of(content.inputs), (), failures, steady)
-
-
-def write_files(
-    content: Content, run: Run, steps: Steps, shown_in: UnitSystem, overwrite: bool, page: Page | None = None
+def run_content(
+    content: Content,
+    units: UnitSystem,
+    overwrite: bool,
+    meter: Meter,
+    report: Callable[[Run], None] = lambda run: None,
+    page: Page | None = None,
 ) -> Run:
-    """Write all files of a scene, pictures in the units shown; return the run with files and failures."""
-    for name, what, job in _jobs(content, run, shown_in, overwrite):
-        steps.next(what)
-        run = _attempted(run, name, job)
-    if page is not None:
-        so_far = run
-        run = _attempted(run, str(page.path), lambda: [write_page(page, content, so_far, shown_in)])
-    steps.next("")
+    """Compute everything, `report` it, then write the files, pictures and page in these units."""
+    files = len(content.of("picture")) + (content.data is not None)
+    steps = steps_of(content)
+    steps.total += files + (content.store is not None and bool(content.of("steady")))
+    with meter() as steps.watch:
+        run = compute(content, Sink(steps, overwrite))
+    report(run)
+    with meter() as steps.watch:
+        for name, job in _jobs(content, run, Sink(steps, overwrite, units)):
+            run = _attempted(run, name, job)
+        if page is not None:
+            so_far = run
+            run = _attempted(run, str(page.path), lambda: [write_page(page, content, so_far, units)])
+        steps.next("")
     return run
+
+
+def steps_of(content: Content) -> Steps:
+    """The steps of what a scene computes, none of them done."""
+    return Steps(sum(plan.steps for plan in _plans(content)), None)
+
+
+def _plans(content: Content) -> list[RequestPlan]:
+    """The plans of all requests but pictures; peaks that are too many for a report are in the store alone."""
+    many = content.store is not None and sum(one.batches for one in content.peaks) > MOST_BATCHES
+    left = ("picture", "peak") if many else ("picture",)
+    return [one.plan(content) for one in content.requests if one.key not in left]
+
+
+def compute(content: Content, sink: Sink) -> Run:
+    """Compute all that a scene asks for; nothing is written but its store, which stays in SI units."""
+    require_modules(content)
+    require_places(content, sink.overwrite)
+    answers: list[RequestAnswer] = []
+    failures: list[str] = []
+    for plan in _plans(content):
+        try:
+            answers.append(plan.run(sink) if plan.file else plan.run(sink).to(content.units))
+        except FAILURES as error:
+            if plan.file is None:
+                raise
+            failures.append(_failure(plan.file, error))
+    return Run(answers=tuple(answers), failures=tuple(failures))
 
 
 def _attempted(run: Run, name: str, job: Callable[[], list[Path]]) -> Run:
@@ -223,20 +213,18 @@ def _attempted(run: Run, name: str, job: Callable[[], list[Path]]) -> Run:
         return replace(run, failures=(*run.failures, _failure(name, error)))
 
 
-def _jobs(
-    content: Content, run: Run, shown_in: UnitSystem, overwrite: bool
-) -> Iterator[tuple[str, str, Callable[[], list[Path]]]]:
-    """Each file, what is said while it is written, and what writes it."""
+def _jobs(content: Content, run: Run, sink: Sink) -> Iterator[tuple[str, Callable[[], list[Path]]]]:
+    """Each file, and what writes it."""
     if content.data is not None:
-        datasets = [one.dataset for one in (*run.peaks, *([run.steady] if run.steady is not None else []))]
+        datasets = [one.dataset for one in run.answers if one.key in ("peak", "steady")]
         groups = dict(zip(content.groups, datasets, strict=True))
-        job = partial(write, Path(content.data), run.dataset, groups, overwrite)
-        yield content.data, f"writing {content.data}", job
+        sink.steps.next(f"writing {content.data}")
+        yield content.data, partial(write, Path(content.data), run.dataset, groups, sink.overwrite)
     if content.store is not None and run.steady is not None and not run.failures:
-        storing = partial(store_group, Path(content.store), "steady", run.steady.dataset)
-        yield content.store, f"writing the group steady of {content.store}", storing
-    for one in content.pictures:
-        yield one.file, f"drawing {one.file}", partial(draw, one, content, shown_in, overwrite)
+        sink.steps.next(f"writing the group steady of {content.store}")
+        yield content.store, partial(store_group, Path(content.store), "steady", run.steady.dataset)
+    for one in content.of("picture"):
+        yield one.file, partial(one.plan(content).run, sink)
 
 
 def _failure(name: str, error: BaseException) -> str:
@@ -245,3 +233,31 @@ def _failure(name: str, error: BaseException) -> str:
     if isinstance(error, OSError) and error.strerror:
         why = error.strerror
     return why if why.startswith(path) else f"{printable(path)}: not written: {why}"
+
+
+# ---- the report ------------------------------------------------------------------------------------
+
+
+def results_text(content: Content, run: Run, units: UnitSystem) -> str:
+    """The results in these units as text for a terminal."""
+    return terminal(content.title, run.blocks(content, units))
+
+
+def files_text(content: Content, run: Run) -> str:
+    """The files that were written, and those that were not, as text."""
+    return terminal("", [*_files(content, run)])
+
+
+def _files(content: Content, run: Run) -> Iterator[Section]:
+    """A row for each file that was written, and a line for each that was not."""
+    paths = [str(file) for file in data_files(content) if file in run.files]
+    parts = ["the values"] * bool(content.outputs) + [f"group {name}" for name in content.groups]
+    rows = [*zip([*paths, *[""] * len(parts)], parts, strict=False)] if paths else []
+    pictures = [one for one in content.of("picture") if Path(one.file) in run.files]
+    rows += [(one.file, f"{one.quantity} over {one.over}") for one in pictures]
+    if rows:
+        yield Section("Written", [TextTable(("", ""), rows)])
+    elif run.dataset is not None and content.data is None and content.store is None:
+        yield Section("Not kept in a file", [Text('give [results] data = "out/values.nc"')])
+    if run.failures:
+        yield Section("Not written", [Text(failure) for failure in run.failures])

@@ -2,9 +2,13 @@
 
 from collections.abc import Sequence
 from io import BytesIO
-from math import isnan
+from math import degrees, isnan
 from typing import Any, NamedTuple
 
+from ...mechanism.quantity_units import UnitSystem
+from ...support.shown import printed
+
+ROWS = 24  # designs that a table lists
 LARGE = 300_000  # bytes of a drawing: a larger one becomes an image of dots
 NONE = "-"  # where there is no value
 
@@ -75,6 +79,23 @@ def image_of(figure: Any, words: str) -> Image:
 def cell(value: float) -> str:
     """A number in six digits, and no -0; a dash where there is none."""
     return NONE if isnan(value) else f"{float(value) + 0.0:.6g}"
+
+
+def unit_of(units: UnitSystem, name: str) -> str:
+    """The unit of a name as a table has it; angles in radians are shown in degrees."""
+    unit = units.of(name).unit
+    return "deg" if unit == "rad" else printed(unit)
+
+
+def in_unit(units: UnitSystem, name: str, value: float) -> str:
+    """A number in SI units as a table has it."""
+    conversion = units.of(name)
+    return cell(degrees(value) if conversion.unit == "rad" else float(conversion.shown(value)))
+
+
+def with_unit(units: UnitSystem, name: str, value: float) -> str:
+    """A number in SI units with its unit."""
+    return NONE if isnan(value) else f"{in_unit(units, name, value)} {unit_of(units, name)}".rstrip()
 
 
 def thinned(items: list[Any], most: int) -> list[Any]:

@@ -30,7 +30,7 @@ def curves(content: Content, run: Run, units: UnitSystem, elsewhere: Sequence[st
     if run.dataset is not None:
         again = [n for n in elsewhere if n in run.dataset and run.dataset[n].dims == ("theta",)]
         blocks += _of_outputs(run.dataset.drop_vars(again))
-    for picture in content.pictures:
+    for picture in content.of("picture"):
         axes = drawn(picture, content, units)
         blocks.append(image_of(axes.figure, picture.title or f"{picture.quantity} over {picture.over}"))
     if run.steady is not None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
-from math import degrees, inf, isnan, pi
+from math import inf, pi
 from typing import Any, NamedTuple
 
 from ...design.drive.drive import drive as drive_of
@@ -23,11 +23,23 @@ from ...mechanism.ranges import PlusMinus
 from ...mechanism.read import read
 from ...mechanism.status import DriveStatus, ToleranceStatus
 from ...support.forks import IMPORTS
-from ...support.shown import printed, shown
+from ...support.shown import shown
 from ...units.text import with_unit_of
 from ..content import Content
 from ..reading.values import Value
-from .blocks import NONE, Block, Section, Text, TextTable, cell, image_of, thinned
+from .blocks import (
+    NONE,
+    Block,
+    Section,
+    Text,
+    TextTable,
+    cell,
+    image_of,
+    in_unit,
+    thinned,
+    unit_of,
+    with_unit,
+)
 
 MOST = 6  # designs beside each other
 LISTED, POINTS = 6, 24  # values of a list, points of a load, that are all shown
@@ -68,23 +80,6 @@ def designs_of(content: Content, units: UnitSystem) -> list[Design]:
 def axes_of(inputs: Mapping[str, Value]) -> dict[str, tuple[float, ...]]:
     """The inputs with several values, but the crank angle."""
     return {n: v for n, v in inputs.items() if isinstance(v, tuple) and n != "theta"}
-
-
-def unit_of(units: UnitSystem, name: str) -> str:
-    """The unit of a name as a table has it; angles in radians are shown in degrees."""
-    unit = units.of(name).unit
-    return "deg" if unit == "rad" else printed(unit)
-
-
-def in_unit(units: UnitSystem, name: str, value: float) -> str:
-    """A number in SI units as a table has it."""
-    conversion = units.of(name)
-    return cell(degrees(value) if conversion.unit == "rad" else float(conversion.shown(value)))
-
-
-def with_unit(units: UnitSystem, name: str, value: float) -> str:
-    """A number in SI units with its unit."""
-    return NONE if isnan(value) else f"{in_unit(units, name, value)} {unit_of(units, name)}".rstrip()
 
 
 # ---- inputs --------------------------------------------------------------------------------------

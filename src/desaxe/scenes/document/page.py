@@ -2,11 +2,12 @@
 
 import platform
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from datetime import datetime
 from importlib import import_module
 from importlib.metadata import version
+from math import prod
 from os.path import abspath
 from pathlib import Path
 from types import MappingProxyType
@@ -15,20 +16,23 @@ from typing import Any, NamedTuple
 from ...evaluation.labels import source
 from ...mechanism.quantity_units import UnitSystem
 from ...support.extras import needed
+from ...support.progress import Steps
 from ...support.shown import printable
 from ...support.written import require_path, write_whole
-from ..content import Content, Run
+from ..content import Content, RequestAnswer, Run, Sink
+from ..parts.peaks import peak_of
+from ..schema import SceneError
 from .blocks import Block, Document, Image, Lines, Section, Text, TextTable
 from .curves import curves, statuses
-from .design import drive, inputs, mechanism, read_tolerances, spread
-from .peaks import peaks_of_outputs
+from .design import axes_of, drive, inputs, mechanism, read_tolerances, spread
 from .render import html, markdown
-from .results import in_units_shown, results
 
 TITLE = "Offset slider-crank"
 PACKAGES = ("numpy", "numba")
 DRIVEN = ("T_in",)  # drawn with the drive
 FORMS: dict[str, Callable[[Document], str]] = {".html": html, ".md": markdown}
+ORDER = ("check", "feasibility", "peak", "steady", "outputs")  # of the answers
+DESIGNS = 1000  # that are searched for peaks nobody named
 LARGEST, BUDGET = 2_000_000, 1_300_000  # bytes of all, and of pictures, of which text makes a third more
 
 
@@ -47,29 +51,30 @@ class Page(NamedTuple):
     warnings: tuple[str, ...] = ()
 
 
-def checked(page: Page, content: Content, units: UnitSystem, heard: Iterable[str] = ()) -> Page:
+def checked(page: Page, content: Content, units: UnitSystem) -> Page:
     """The page of a scene with its tolerances in SI units; an error where it cannot be written or drawn."""
     for module in ("matplotlib.figure", "xarray"):
         with needed("a report"):
             import_module(module)
     require_document(page.path, page.overwrite)
-    others = [content.data, content.store, *(picture.file for picture in content.pictures)]
+    others = [content.data, content.store, *(picture.file for picture in content.of("picture"))]
     if abspath(page.path) in [abspath(other) for other in others if other is not None]:
         raise ValueError(f"report {printable(page.path)}: another result of the scene is written there")
-    return page._replace(tolerances=read_tolerances(content, units, page.tolerances), warnings=tuple(heard))
+    return page._replace(tolerances=read_tolerances(content, units, page.tolerances))
 
 
 def write_page(page: Page, content: Content, run: Run, units: UnitSystem) -> Path:
     """Write the report of a scene's results in these units; its path."""
     with warnings.catch_warnings(record=True) as heard:
         warnings.simplefilter("always")
-        run = replace(run, peaks=(*run.peaks, *peaks_of_outputs(content)))
-        shown = in_units_shown(content, run, units)
+        answers = [*run.answers, *_peaks_of_outputs(content)]
+        run = replace(run, answers=tuple(sorted(answers, key=lambda one: ORDER.index(one.key))))
+        shown = run.to(content, units)
         driven = drive(content, units, page.fluctuation)
         sections = [
             inputs(content, units),
             mechanism(content, units),
-            *results(content, shown, units),
+            *(one.blocks(units) for one in shown.answers),
             curves(content, shown, units, DRIVEN if driven else ()),
             driven,
             spread(content, units, page.tolerances),
@@ -80,6 +85,19 @@ def write_page(page: Page, content: Content, run: Run, units: UnitSystem) -> Pat
     known = [section for section in sections if section is not None]
     document = Document(content.title or TITLE, [*known, warned, _origin(page.command)])
     return write_document(document, page.path, page.overwrite)
+
+
+def _peaks_of_outputs(content: Content) -> Iterator[RequestAnswer]:
+    """The largest magnitudes of outputs that no [[peak]] is about."""
+    if prod(len(values) for values in axes_of(content.inputs).values()) > DESIGNS:
+        return
+    for name in content.outputs:
+        if not any(one.quantity == name for one in content.peaks):
+            try:
+                request = peak_of("report", {"quantity": name}, content.inputs, content.units)
+            except SceneError:  # a status, or a quantity of the whole design
+                continue
+            yield request.plan(content).run(Sink(Steps(1, None))).to(content.units)
 
 
 def _origin(command: str) -> Section:

@@ -3,7 +3,7 @@
 import json
 import shutil
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from math import inf, prod
 from os import PathLike
 from pathlib import Path
@@ -106,7 +106,7 @@ def _plan_of(content: Content) -> RunPlan:
         "derivation": digest()[:16],
         "inputs": [_input(name, value, content.units) for name, value in content.inputs.items()],
         **grid,
-        "also": [asdict(work) for work in content.work],
+        "also": [row for one in content.requests for row in one.plan(content).describe()],
         "results": content.data if content.store is None else content.store,
         "sweep": None if content.store is None else _sweep(content),
     })  # fmt: skip

@@ -101,7 +101,7 @@ def _of_scene(source: Any, names: Iterable[str] | None) -> PageContent:
 
     known = source if isinstance(source, Scene) else scene(source)
     inside = known.content
-    requests: tuple[Any, ...] = (*inside.peaks, *inside.pictures)
+    requests: tuple[Any, ...] = (*inside.peaks, *inside.of("picture"))
     asked = [*inside.outputs, *(one.quantity for one in requests)]
     shown = [name for name in asked if name not in STATE]
     with using(inside.definitions):

@@ -22,8 +22,7 @@ from ...support.extras import needed
 from ...support.template import file_text, filled
 from ...support.written import UNSEALED, sealed, write_whole
 from ...units.system import DIMENSIONS
-from ..load_tables import load_table
-from ..toml_text import value_text
+from ..written import load_table, value_text
 from .content import PageContent, closed_functions, left_out_text
 
 # In the order in which they build on each other.

@@ -22,9 +22,8 @@ from ...mechanism.own_lines import has_kinks
 from ...peaks import special
 from ...peaks.designs import KINDS, PeakPlan, plan_of
 from ...sweeps.peak_step import WORDS
-from ..content import Content
-from ..parts.peaks import Peak, group_names
-from ..setting import columns_of
+from ..content import Content, columns_of
+from ..parts.peaks import Peak
 from .axes import arguments_of, axis_rows
 from .portable import left_out
 
@@ -51,7 +50,7 @@ def carried(content: Content) -> list[ExportedPeak]:
     """The peaks of a scene that a module has."""
     if any(callable(value) for value in content.inputs.values()):
         return []  # a module under loads has their tables in its formulas
-    named = zip(group_names(content.peaks), content.peaks, strict=True)
+    named = zip(content.groups, content.peaks, strict=False)
     return [result for name, one in named if (result := _exported(name, one, content)) is not None]
 
 
@@ -136,7 +135,7 @@ def _function(one: ExportedPeak, search: str, module: Module) -> str:
 def left_out_of_module(content: Content) -> list[str]:
     """The parts of a scene that the Python module leaves out: of peaks those that need nodes of their own."""
     here = {one.name for one in carried(content)}
-    named: Mapping[str, Peak] = dict(zip(group_names(content.peaks), content.peaks, strict=True))
+    named: Mapping[str, Peak] = dict(zip(content.groups, content.peaks, strict=False))
     gone = {f"[[peak]] {one.quantity}" for name, one in named.items() if name not in here}
     lost = left_out(content, reduction=False)
     return [words for words in lost if not words.startswith("[[peak]]") or words in gone]

@@ -10,18 +10,10 @@ from ...mechanism.catalogue import quantity
 from ...mechanism.quantity_units import UnitSystem
 from ...units.parse import factor_to_si
 from ...units.text import split_quantity
-from ..reading.values import (
-    Value,
-    design_of,
-    needs_of,
-    require,
-    require_known,
-    single,
-    with_others,
-    with_unit_in,
-)
+from ..content import Content, PlanRow, RequestAnswer, RequestPlan
+from ..document.blocks import Section, TextTable
+from ..reading.values import Value, design_of, require_quantity, single, with_others, with_unit_in
 from ..schema import SceneError, shown
-from ..setting import Setting
 
 MOST_DIGITS = 15  # in front of the point; a larger number is written as a power of ten
 
@@ -104,11 +96,49 @@ class Check:
     printed: Printed
     inputs: dict[str, Any]
 
-    def run(self, setting: Setting) -> CheckResult:
+    def run(self, content: Content) -> CheckResult:
         """Compute the value."""
-        design: dict[str, Any] = {**self.inputs, "branch": setting.branch, "accuracy": setting.accuracy}
+        design: dict[str, Any] = {**self.inputs, "branch": content.branch, "accuracy": content.accuracy}
         computed = float(evaluate(self.quantity, **design))
         return CheckResult(self, computed, self.printed.agrees(computed))
+
+
+@dataclass(frozen=True)
+class Checks:
+    """All printed values of a scene."""
+
+    key = "check"
+    checks: tuple[Check, ...]
+
+    def plan(self, content: Content) -> RequestPlan:
+        """A point for each."""
+        work = PlanRow("printed values", len(self.checks), "points", "single points in plain Python")
+        return RequestPlan(
+            lambda _: ChecksAnswer(results=tuple(one.run(content) for one in self.checks)), work=[work]
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChecksAnswer(RequestAnswer):
+    """Printed values beside the computed ones, which stay in the units of the printed ones."""
+
+    key = "check"
+    results: tuple[CheckResult, ...]
+
+    def blocks(self, units: UnitSystem) -> Section:
+        """A table for each source."""
+        tables = []
+        for source in dict.fromkeys(one.check.source for one in self.results):
+            rows: list[tuple[str, ...]] = []
+            last = None
+            for check, computed, agrees in (one for one in self.results if one.check.source == source):
+                number = check.printed
+                cells = number.text(number.value), number.text(number.rounded(computed))
+                full = f"{computed * number.factor:.8g}"
+                title, last = "" if check.title == last else check.title, check.title
+                rows.append((title, check.quantity, *cells, full, "agrees" if agrees else "DIFFERS"))
+            tables.append(TextTable(("", "", source, "desaxe", "in full", ""), rows))
+        return Section("Checks", tables)
 
 
 def checks_of(
@@ -116,12 +146,11 @@ def checks_of(
 ) -> list[Check]:
     """The printed values of a [[check]], each with the inputs that it needs."""
     there = with_others(inputs, design_of(f"{key}.at", table.get("at", {}), units))
-    state, checks = "omega" in there, []
+    checks = []
     for name, written in table["printed"].items():
         place = f"{key}.printed.{name}"
-        require_known(place, name, state)
-        needed = require(place, needs_of((name,), there), name, there)
-        text, unit = with_unit_in(units, name, written), quantity(name, state).unit
+        needed = require_quantity(place, name, there)
+        text, unit = with_unit_in(units, name, written), quantity(name, "omega" in there).unit
         printed = read_printed(place, text, table.get("digits"), unit)
         design = single(place, needed, there)
         checks.append(Check(table.get("title", ""), table.get("source", "printed"), name, printed, design))

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import prod
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -17,13 +17,13 @@ from ...mechanism.inputs import OTHERS, Input
 from ...mechanism.names import LENGTHS
 from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import SteadyStatus
-from ..reading.loads import motor_of
+from ...support.shown import printed
+from ..content import Content, PlanRow, RequestAnswer, RequestPlan, Sink
+from ..document.blocks import ROWS as LISTED
+from ..document.blocks import Section, Text, TextTable, cell, thinned
+from ..loads import motor_of
 from ..reading.values import Value, read_number
 from ..schema import SceneError, shown
-from ..setting import PlanRow, Setting
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 SPEEDS = ("omega0", "omega", "alpha")  # of which the way of turning counts alone
 TORQUE = Input("torque", "N*m", "", None, "a finite torque")
@@ -37,33 +37,68 @@ MEANINGS = {
 }  # fmt: skip
 
 
+REASONS = 5  # without a steady state, that are listed
+FIGURES = ("omega_mean", "fluctuation", "power_mean", "work", "multiplier", "flywheel_inertia")
+
+
 @dataclass(frozen=True)
 class OnMotor:
     """The steady states on a motor, for the outer product of `axes` with everything else fixed."""
 
+    key = group = "steady"
     torque: Any
     axes: dict[str, tuple[float, ...]]
     fixed: dict[str, Value]
     seeks: bool  # the flywheel for a fluctuation
 
-    @property
-    def work(self) -> PlanRow:
+    def plan(self, content: Content) -> RequestPlan:
         """A periodic motion for each design."""
         designs = prod(len(values) for values in self.axes.values())
         how = "periodic motions by Newton's method, in NumPy"
-        return PlanRow("steady state on a motor", designs, "designs", how)
+        work = [PlanRow("steady state on a motor", designs, "designs", how)]
+        return RequestPlan(lambda sink: self._answer(content, sink), 1, work)
+
+    def _answer(self, content: Content, sink: Sink) -> "MotorResult":
+        """The steady states of all designs, together."""
+        sink.steps.next("steady state")
+        arrays = np.meshgrid(*(np.asarray(v) for v in self.axes.values()), indexing="ij") if self.axes else []
+        inputs: dict[str, Any] = {**self.fixed, **dict(zip(self.axes, arrays, strict=True))}
+        result = steady(torque=self.torque, branch=content.branch, **inputs)
+        names = [*NUMBERS, "flywheel_inertia", "status"]
+        values = {n: (result[n], {"units": OTHERS.get(n, "1"), "long_name": MEANINGS[n]}) for n in names}
+        about = {"torque": repr(self.torque)}
+        dataset = content.labelled(values, self.axes, self.fixed, about, _attributes)
+        return MotorResult(asked=self, dataset=dataset, found=result)
 
 
-class MotorResult(NamedTuple):
+@dataclass(frozen=True, kw_only=True)
+class MotorResult(RequestAnswer):
     """The steady states of all designs, labelled.
 
     `dataset` has over the designs' dimensions: `omega_mean`, `period`, `fluctuation`, `power_mean`, `work`,
     `multiplier`, `flywheel_inertia`, `status`. `found` is what `desaxe.steady` gave [SI].
     """
 
+    key = "steady"
     asked: OnMotor
-    dataset: "xr.Dataset"
     found: Steady
+
+    def blocks(self, units: UnitSystem) -> Section:
+        """A row for each design, and why some have no steady state."""
+        dataset, axes = self.dataset, list(self.asked.axes)
+        figures = [name for name in FIGURES if name in dataset.data_vars]
+        rows = []
+        for index in thinned(list(np.ndindex(dataset["status"].shape)), LISTED):
+            row = [cell(dataset[name].values[k]) for name, k in zip(axes, index, strict=True)]
+            rows.append([*row, *(cell(dataset[name].values[index]) for name in figures)])
+        names = [*axes, *figures]
+        messages = np.ravel(np.asarray(self.found["message"], object)).tolist()
+        reasons = [message for message in dict.fromkeys(messages) if message != "ok"]
+        more = len(reasons) - REASONS
+        remarks = [*reasons[:REASONS], *[f"and {more} more reasons"] * (more > 0)]
+        remarks += [f"{LISTED} of {len(messages)} designs are shown"] * (len(messages) > LISTED)
+        table = TextTable(names, rows, [printed(dataset[name].units) for name in names])
+        return Section("Steady state", [Text(f"On {self.asked.torque!r}."), table, *map(Text, remarks)])
 
 
 def on_motor(
@@ -104,18 +139,6 @@ def _number(key: str, row: Input, written: Any, units: UnitSystem) -> float:
     if row is FLUCTUATION and number >= 2.0:
         raise SceneError(f"steady.{key} = {shown(written)}: it must be {row.limit}")
     return number
-
-
-def steady_of(asked: OnMotor, setting: Setting) -> MotorResult:
-    """The steady states of all designs, together."""
-    arrays = np.meshgrid(*(np.asarray(v) for v in asked.axes.values()), indexing="ij") if asked.axes else []
-    given: dict[str, Any] = {**asked.fixed, **dict(zip(asked.axes, arrays, strict=True))}
-    result = steady(torque=asked.torque, branch=setting.branch, **given)
-    names = [*NUMBERS, "flywheel_inertia", "status"]
-    values = {n: (result[n], {"units": OTHERS.get(n, "1"), "long_name": MEANINGS[n]}) for n in names}
-    about = {"torque": repr(asked.torque)}
-    dataset = setting.labelled(values, asked.axes, asked.fixed, about, _attributes)
-    return MotorResult(asked, dataset, result)
 
 
 def _attributes(name: str) -> dict[str, str]:

@@ -1,9 +1,9 @@
 """[[peak]]: refined extrema over the crank angle for many designs, and claims about them."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from math import pi, prod
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +15,8 @@ from ...mechanism.catalogue import has, of_design, quantity
 from ...mechanism.names import CENTRES, LENGTHS, STATUS, parts, sensitivity
 from ...mechanism.quantity_units import UnitSystem
 from ...peaks.peak import peak
-from ...support.progress import Steps
 from ...sweeps.peak_step import WORDS, attributes_beside, slope_attributes
+from ..content import Content, PlanRow, RequestPlan, Sink, columns_of
 from ..reading.values import (
     OPTIONAL,
     Value,
@@ -30,14 +30,10 @@ from ..reading.values import (
     with_others,
 )
 from ..schema import SceneError, shown
-from ..setting import PlanRow, Setting, columns_of
 from .checks import Printed, read_percentage
-
-if TYPE_CHECKING:
-    import xarray as xr
+from .peak_answer import ClaimResult, PeakResult
 
 DESIGNS = 1_000  # designs of a peak between two reports of progress
-SIDEWAYS = ("ec", "F_X", "g_X")  # change sign where the mechanism is mirrored at the Y axis
 
 
 @dataclass(frozen=True)
@@ -54,6 +50,7 @@ class Claim:
 class Peak:
     """A peak over the crank angle, for the outer product of `axes` with everything else fixed."""
 
+    key = "peak"
     title: str
     quantity: str
     kind: str
@@ -77,41 +74,20 @@ class Peak:
         return -(-(self.designs + len(self.claims) + bool(self.baseline)) // DESIGNS)
 
     @property
-    def work(self) -> PlanRow:
-        """A search for each design."""
-        how = "refined over theta by its derivative"
-        return PlanRow(f"{self.kind} of {self.quantity}", self.designs, "designs", how)
+    def group(self) -> str:
+        """The name of its results, such as `peak_absmax_a_C`."""
+        return f"peak_{self.kind}_{self.quantity}"
 
     @property
     def state(self) -> bool:
         """True for peaks in a given state of motion."""
         return "omega" in self.axes or "omega" in self.fixed
 
-
-class ClaimResult(NamedTuple):
-    """A claimed increase of a peak over its baseline and the computed one, in percent."""
-
-    claim: Claim
-    computed: float
-    agrees: bool
-
-
-class PeakResult(NamedTuple):
-    """The peaks of all designs, labelled, and the checked claims about them.
-
-    `dataset` has over the designs' dimensions: `value`, `theta`, `side`, `status`, `value_wrt_<parameter>`
-    and, where there is a baseline, `increase` over it in percent. `mirrored` tells the designs with
-    ec = 0 that reach the peak at -theta as well, where the derivatives by what points to the side
-    (ec, F_X, g_X) have the other sign.
-    """
-
-    peak: Peak
-    dataset: "xr.Dataset"
-    claims: tuple[ClaimResult, ...]
-    mirrored: NDArray[np.bool_]
-
-
-# ---- from the table to the request ---------------------------------------------------------------
+    def plan(self, content: Content) -> RequestPlan:
+        """A search for each design."""
+        how = "refined over theta by its derivative"
+        work = [PlanRow(f"{self.kind} of {self.quantity}", self.designs, "designs", how)]
+        return RequestPlan(lambda sink: _answer(self, content, sink), self.batches, work)
 
 
 def peak_of(key: str, table: Mapping[str, Any], inputs: Mapping[str, Value], units: UnitSystem) -> Peak:
@@ -218,17 +194,17 @@ def _other_design(
     return {name: {**fixed, **at}[name] for name in (*axes, *fixed)}
 
 
-# ---- from the request to the result --------------------------------------------------------------
+# ---- the answer -----------------------------------------------------------------------------------
 
 
-def peaks_of(one: Peak, setting: Setting, steps: Steps) -> PeakResult:
-    """The peaks of designs, baseline and claims, found together."""
+def _answer(one: Peak, content: Content, sink: Sink) -> PeakResult:
+    """The peaks of designs, baseline and claims, searched together."""
     others = [*([one.baseline] if one.baseline else []), *(claim.design for claim in one.claims)]
     columns = {
         name: np.append(column, [design[name] for design in others])
         for name, column in columns_of({**one.axes, **one.fixed}).items()
     }
-    values = _searched(one, setting, columns, steps)
+    values = _searched(one, content, columns, sink)
     shape, count = [len(axis) for axis in one.axes.values()], one.designs
     arrays = {name: array[:count].reshape(shape) for name, array in values.items()}
     claims: tuple[ClaimResult, ...] = ()
@@ -238,7 +214,7 @@ def peaks_of(one: Peak, setting: Setting, steps: Steps) -> PeakResult:
         computed = [float(_increase(value, base)) for value in claimed]
         pairs = zip(one.claims, computed, strict=True)
         claims = tuple(ClaimResult(claim, value, claim.increase.agrees(value)) for claim, value in pairs)
-    mirrored = _mirrored(one, setting, columns, values)[:count].reshape(shape)
+    mirrored = _mirrored(one, content, columns, values)[:count].reshape(shape)
     known = quantity(one.quantity, one.state)
     words = f"{WORDS[one.kind]} of {one.quantity}, {known.meaning}"
     attributes = {
@@ -250,20 +226,20 @@ def peaks_of(one: Peak, setting: Setting, steps: Steps) -> PeakResult:
         n: (a, attributes.get(n) or slope_attributes(one.quantity, n.removeprefix("value_wrt_")))
         for n, a in arrays.items()
     }
-    kind = {"quantity": one.quantity, "kind": one.kind}
-    dataset = setting.labelled(rows, one.axes, {**one.fixed, **one.loads}, kind)
-    return PeakResult(one, dataset, claims, mirrored)
+    about = {"quantity": one.quantity, "kind": one.kind}
+    dataset = content.labelled(rows, one.axes, {**one.fixed, **one.loads}, about)
+    return PeakResult(peak=one, dataset=dataset, claims=claims, mirrored=mirrored)
 
 
 def _searched(
-    one: Peak, setting: Setting, columns: Mapping[str, NDArray[np.float64]], steps: Steps
+    one: Peak, content: Content, columns: Mapping[str, NDArray[np.float64]], sink: Sink
 ) -> dict[str, NDArray[Any]]:
     """Value, angle, status and gradient of flat designs, batch by batch."""
     size = next(iter(columns.values())).size
-    options: dict[str, Any] = {"branch": setting.branch, "accuracy": setting.accuracy, **one.loads}
+    options: dict[str, Any] = {"branch": content.branch, "accuracy": content.accuracy, **one.loads}
     batches = []
     for start in range(0, size, DESIGNS):
-        steps.next(f"peaks of {one.quantity}")
+        sink.steps.next(f"peaks of {one.quantity}")
         batch: dict[str, Any] = {name: column[start : start + DESIGNS] for name, column in columns.items()}
         result = peak(one.quantity, kind=one.kind, theta=one.theta, **batch, **options)
         gradient = result.pop("gradient")
@@ -274,7 +250,7 @@ def _searched(
 
 
 def _mirrored(
-    one: Peak, setting: Setting, columns: Mapping[str, NDArray[np.float64]], values: Mapping[str, Any]
+    one: Peak, content: Content, columns: Mapping[str, NDArray[np.float64]], values: Mapping[str, Any]
 ) -> NDArray[np.bool_]:
     """Designs with ec = 0 whose peak is shared by theta and -theta: a kink in its course over ec."""
     theta = values["theta"]
@@ -283,7 +259,7 @@ def _mirrored(
         return np.zeros(theta.shape, np.bool_)
     steady = columns["alpha"] == 0.0 if "alpha" in columns else True
     usable = (columns["ec"] == 0.0) & (values["status"] == 0) & (np.abs(np.sin(theta)) > 1e-6) & steady
-    design: dict[str, Any] = {**columns, **one.loads, "branch": setting.branch, "accuracy": setting.accuracy}
+    design: dict[str, Any] = {**columns, **one.loads, "branch": content.branch, "accuracy": content.accuracy}
     there: Any = evaluate(one.quantity, theta=-theta, **design)
     there = np.abs(there) if one.kind == "absmax" else there
     shared: NDArray[np.bool_] = usable & (np.abs(there - values["value"]) <= 1e-9 * np.abs(values["value"]))
@@ -294,13 +270,3 @@ def _increase(value: Any, base: float) -> Any:
     """In percent; relative to the magnitude of the baseline, so that more is always positive."""
     with np.errstate(all="ignore"):
         return 100.0 * (np.asarray(value) - base) / np.abs(np.float64(base))
-
-
-def group_names(peaks: Sequence[Peak]) -> list[str]:
-    """A name for each peak, such as `peak_absmax_a_C`; further ones of the same kind get a number."""
-    names: list[str] = []
-    for one in peaks:
-        name = f"peak_{one.kind}_{one.quantity}"
-        again = sum(other == name or other.startswith(f"{name}__") for other in names)
-        names.append(f"{name}__{again + 1}" if again else name)
-    return names

@@ -11,6 +11,7 @@ from ...evaluation.in_units import in_units
 from ...mechanism.inputs import INPUTS
 from ...mechanism.quantity_units import UnitSystem
 from ...support.forks import IMPORTS
+from ..content import Content, PlanRow, RequestPlan, Sink
 from ..reading.values import (
     Value,
     design_of,
@@ -22,7 +23,6 @@ from ..reading.values import (
     with_others,
 )
 from ..schema import SceneError, hint, shown
-from ..setting import PlanRow, Setting
 from .grid import arrays_of
 
 
@@ -30,6 +30,7 @@ from .grid import arrays_of
 class PictureRequest:
     """A family of curves and the file it goes to."""
 
+    key = "picture"
     title: str
     file: str
     quantity: str
@@ -37,11 +38,18 @@ class PictureRequest:
     family: str | None
     inputs: dict[str, Value]
 
-    @property
-    def work(self) -> PlanRow:
-        """The points of its curves."""
+    def plan(self, content: Content) -> RequestPlan:
+        """The points of its curves; running draws them into the file, in the units of the report."""
         points = prod(len(value) for value in self.inputs.values() if isinstance(value, tuple))
-        return PlanRow(f"picture of {self.quantity}", points, "points", f"drawn to {self.file}")
+        work = [PlanRow(f"picture of {self.quantity}", points, "points", f"drawn to {self.file}")]
+        return RequestPlan(lambda sink: self._draw(content, sink), 1, work, self.file)
+
+    def _draw(self, content: Content, sink: Sink) -> list[Path]:
+        sink.steps.next(f"drawing {self.file}")
+        axes = drawn(self, content, sink.units)
+        with IMPORTS:
+            from ...plot import save
+        return [save(axes.figure, self.file, overwrite=sink.overwrite)]
 
 
 def picture_of(
@@ -70,27 +78,19 @@ def picture_of(
     return PictureRequest(table.get("title", ""), table["file"], name, over, member, values)
 
 
-def draw(picture: PictureRequest, setting: Setting, shown_in: UnitSystem, overwrite: bool) -> list[Path]:
-    """Draw the curves of a picture, in the units shown, into its file; return its path."""
-    axes = drawn(picture, setting, shown_in)
-    with IMPORTS:
-        from ...plot import save
-    return [save(axes.figure, picture.file, overwrite=overwrite)]
-
-
-def drawn(picture: PictureRequest, setting: Setting, shown_in: UnitSystem) -> Any:
-    """The curves of a picture, in the units shown; returns the Axes."""
+def drawn(picture: PictureRequest, content: Content, units: UnitSystem) -> Any:
+    """The curves of a picture, in these units; returns the Axes."""
     with IMPORTS:
         from ...plot import curves
 
     # With the names of the outputs the kernel of the grid serves here too, where all inputs are the same.
-    shared = picture.quantity in setting.outputs and set(picture.inputs) == set(setting.inputs)
-    names = setting.outputs if shared else (picture.quantity,)
-    options: dict[str, Any] = {"accuracy": setting.accuracy, "threads": setting.threads}
-    values: Any = grid(names, branch=setting.branch, **options, **arrays_of(picture.inputs))
-    dataset = in_units(values, shown_in)
+    shared = picture.quantity in content.outputs and set(picture.inputs) == set(content.inputs)
+    names = content.outputs if shared else (picture.quantity,)
+    options: dict[str, Any] = {"accuracy": content.accuracy, "threads": content.threads}
+    values: Any = grid(names, branch=content.branch, **options, **arrays_of(picture.inputs))
+    dataset = in_units(values, units)
     axes: Any = curves(dataset, picture.quantity, over=picture.over, family=picture.family).axes
-    title = picture.title or setting.title
+    title = picture.title or content.title
     if title:
         axes.set_title(" ".join(title.split()), loc="left", parse_math=False)  # text, no TeX
     return axes

@@ -1,18 +1,22 @@
 """The designs of a scene that turn fully, and the angles that the others cannot reach."""
 
-from collections.abc import Mapping
-from math import pi, prod
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import degrees, pi, prod
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...design.feasibility.feasibility import feasibility
 from ...evaluation.evaluate import evaluate
-from ..reading.values import Value
-from ..setting import columns_of
+from ...mechanism.names import LENGTHS
+from ...mechanism.quantity_units import UnitSystem
+from ..content import Content, RequestAnswer, RequestPlan, columns_of
+from ..document.blocks import Section, Text, with_unit
 
 MOST_DESIGNS = 10_000_000  # that are looked at for feasibility; a sweep has the margin of all
 MOST_SHOWN = 100  # designs that cannot turn fully, looked at one by one
+GAPS = 5  # of these that are listed
 
 
 class Infeasible(NamedTuple):
@@ -22,36 +26,75 @@ class Infeasible(NamedTuple):
     gaps: tuple[tuple[float, float], ...]
 
 
-class FeasibilityResult(NamedTuple):
+@dataclass(frozen=True, kw_only=True)
+class FeasibilityResult(RequestAnswer):
     """The number of designs that turn fully, and the first ones that do not.
 
     `limit` is the largest |ec| with which the crank turns fully [m], where AB and BC are numbers.
     """
 
+    key = "feasibility"
     designs: int
     turning: int
     infeasible: tuple[Infeasible, ...]
     limit: float | None
 
+    def blocks(self, units: UnitSystem) -> Section:
+        """The limit of ec, and the designs that cannot turn."""
+        return Section("Feasibility", [Text(line) for line in self._lines(units)])
 
-def feasibility_of(inputs: Mapping[str, Value]) -> FeasibilityResult | None:
-    """The feasibility of the scene's designs; None without all lengths, or for too many designs."""
-    lengths = {name: value for name, value in inputs.items() if name in ("ec", "AB", "BC")}
-    count = prod(len(value) for value in lengths.values() if isinstance(value, tuple))
-    if len(lengths) < 3 or count > MOST_DESIGNS:
-        return None
-    columns: dict[str, Any] = columns_of(lengths)
-    margins: Any = evaluate("margin", **columns)
-    rows = np.flatnonzero(margins < 0.0)
-    designs = [{name: float(column[row]) for name, column in columns.items()} for row in rows[:MOST_SHOWN]]
-    result = tuple(Infeasible(one, _gaps(feasibility(**one)["theta_intervals"])) for one in designs)
-    AB, BC = inputs["AB"], inputs["BC"]
-    limit = (
-        None
-        if isinstance(AB, tuple) or isinstance(BC, tuple)
-        else feasibility(ec=0.0, AB=AB, BC=BC)["margin"]
-    )
-    return FeasibilityResult(margins.size, margins.size - rows.size, result, limit)
+    def _lines(self, units: UnitSystem) -> Iterator[str]:
+        if self.limit is not None:
+            limit = f"|ec| < BC - AB = {with_unit(units, 'ec', self.limit)}"
+            yield f"the crank turns fully for {limit if self.limit > 0.0 else 'no ec, since BC <= AB'}"
+        yield f"{self.turning} of {self.designs} designs of this scene turn fully"
+        designs = [one.design for one in self.infeasible]
+        names = [n for n in (designs or [{}])[0] if len({design[n] for design in designs}) > 1] or ["ec"]
+        for one in self.infeasible[:GAPS]:
+            design = ", ".join(f"{name} = {with_unit(units, name, one.design[name])}" for name in names)
+            gaps = " and ".join(f"{degrees(a):.2f} to {degrees(b):.2f}" for a, b in one.gaps)
+            part, where = " at part of the turn", f"for theta from {gaps} deg"
+            if any(b - a >= 2.0 * pi for a, b in one.gaps):
+                part, where = "", "at any angle"
+            yield f"infeasible{part}: {design} cannot be assembled {where}"
+        more = self.designs - self.turning - GAPS
+        if more > 0:
+            yield f"and {more} more"
+
+
+@dataclass(frozen=True)
+class Feasibility:
+    """The designs of the lengths, a number or a tuple each."""
+
+    key = "feasibility"
+    lengths: dict[str, Any]
+
+    @property
+    def designs(self) -> int:
+        """The number of designs."""
+        return prod(len(value) for value in self.lengths.values() if isinstance(value, tuple))
+
+    def plan(self, content: Content) -> RequestPlan:
+        """The margins of all designs, and the gaps of some that do not turn."""
+        return RequestPlan(lambda _: self._answer())
+
+    def _answer(self) -> FeasibilityResult:
+        columns: dict[str, Any] = columns_of(self.lengths)
+        margins: Any = evaluate("margin", **columns)
+        rows = np.flatnonzero(margins < 0.0)
+        designs = [{n: float(column[row]) for n, column in columns.items()} for row in rows[:MOST_SHOWN]]
+        result = tuple(Infeasible(one, _gaps(feasibility(**one)["theta_intervals"])) for one in designs)
+        AB, BC, limit = self.lengths["AB"], self.lengths["BC"], None
+        if not (isinstance(AB, tuple) or isinstance(BC, tuple)):
+            limit = feasibility(ec=0.0, AB=AB, BC=BC)["margin"]
+        turning = margins.size - rows.size
+        return FeasibilityResult(designs=margins.size, turning=turning, infeasible=result, limit=limit)
+
+
+def feasibility_of(inputs: dict[str, Any]) -> list[Feasibility]:
+    """The feasibility of a scene's designs; none without all lengths, or for too many designs."""
+    request = Feasibility({name: value for name, value in inputs.items() if name in LENGTHS})
+    return [request] if len(request.lengths) == 3 and request.designs <= MOST_DESIGNS else []
 
 
 def _gaps(intervals: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:

@@ -23,12 +23,14 @@ from ...runtime.request import accuracy_of
 from ...support.memory import bytes_of
 from ...support.toml import read_toml
 from ..content import Content
-from ..parts.checks import checks_of
+from ..loads import force_of, without_objects
+from ..parts.checks import Checks, checks_of
+from ..parts.grid import Grid
 from ..parts.motor import on_motor
 from ..parts.peaks import peak_of
 from ..parts.pictures import picture_of
+from ..parts.turning import feasibility_of
 from ..schema import SECTIONS, SceneError, check, shown
-from .loads import force_of, without_objects
 from .values import Value, require_for_grid, require_known, values_of, written_inputs
 
 PICTURES = (".png", ".svg", ".pdf")
@@ -111,18 +113,18 @@ def _content(
         numbered = enumerate(data.get(key, ()) if key in requests else (), 1)
         return [one_of(f"{key} #{number}", table, inputs, units) for number, table in numbered]
 
-    checks, peaks, pictures = each("check", checks_of), each("peak", peak_of), each("picture", picture_of)
-    steady = data.get("steady")
+    checks = tuple(one for some in each("check", checks_of) for one in some)
+    steady = [] if "steady" not in data else [on_motor(data["steady"], inputs, units, folder)]
+    every = [*[Checks(checks)] * bool(checks), *feasibility_of(inputs), *each("peak", peak_of), *steady]
+    every += [*[Grid()] * bool(outputs or data.get("results", {}).get("store")), *each("picture", picture_of)]
     accuracy = data.get("accuracy", "standard")
     with _refusing(f"accuracy = {shown(accuracy)}: ", lambda text: text.partition(": ")[2]):
         accuracy = accuracy_of(accuracy)
     return Content(
-        title=data.get("title", ""), outputs=outputs, accuracy=accuracy,
-        branch=data.get("mechanism", {}).get("branch", 1), inputs=inputs,
-        reduction=_reduction(data.get("reduce", {}), outputs, inputs, units), threads=data.get("threads"),
-        units=units, checks=tuple(one for some in checks for one in some), peaks=tuple(peaks),
-        pictures=tuple(pictures), steady=None if steady is None else on_motor(steady, inputs, units, folder),
-        definitions=own, **_storage(data, outputs, inputs),
+        title=data.get("title", ""), outputs=outputs, accuracy=accuracy, inputs=inputs, units=units,
+        branch=data.get("mechanism", {}).get("branch", 1), threads=data.get("threads"), definitions=own,
+        reduction=_reduction(data.get("reduce", {}), outputs, inputs, units), requests=tuple(every),
+        **_storage(data, outputs, inputs),
     )  # fmt: skip
 
 

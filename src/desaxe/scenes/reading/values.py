@@ -185,6 +185,12 @@ def require(key: str, needs: Iterable[str], what: str, inputs: Mapping[str, Any]
     return [name for name in needs if name in inputs]
 
 
+def require_quantity(key: str, name: str, inputs: Mapping[str, Any]) -> list[str]:
+    """The needed inputs of a quantity at a point; SceneError for an unknown one, or a missing input."""
+    require_known(key, name, "omega" in inputs)
+    return require(key, needs_of((name,), inputs), name, inputs)
+
+
 def require_for_grid(key: str, names: tuple[str, ...], inputs: Mapping[str, Any]) -> list[str]:
     """The needed inputs of a grid, which has `status` and `margin` too; they need no speed."""
     still = "theta" not in inputs and all(name == STATUS or of_design(name) for name in names)

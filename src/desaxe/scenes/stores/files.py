@@ -55,7 +55,7 @@ def require_modules(content: Content) -> None:
     modules |= {"[[peak]]": "xarray"} if content.peaks else {}
     modules |= {} if content.data is None else MODULES.get(Path(content.data).suffix, {})
     pictures = {"[[picture]]": "matplotlib", "the values of a [[picture]]": "xarray"}
-    for what, module in (modules | (pictures if content.pictures else {})).items():
+    for what, module in (modules | (pictures if content.of("picture") else {})).items():
         with needed(what):
             import_module(module)
 
@@ -82,7 +82,7 @@ def require_places(content: Content, overwrite: bool) -> None:
 def _places(content: Content) -> list[tuple[str, Path]]:
     """Each file and store of a scene, by its key."""
     places = [("results.data", file) for file in data_files(content)]
-    places += [(f"picture #{k}.file", Path(one.file)) for k, one in enumerate(content.pictures, 1)]
+    places += [(f"picture #{k}.file", Path(one.file)) for k, one in enumerate(content.of("picture"), 1)]
     return places + ([] if content.store is None else [("results.store", Path(content.store))])
 
 

@@ -1,59 +1,67 @@
-"""The sections on peaks: value, angle, side and slopes of each design, and the claims about them."""
+"""The peaks of designs: values, angles, sides and slopes, and the claims about them, as a section."""
 
-from collections.abc import Iterator
-from math import degrees, isfinite, isnan, prod
-from typing import Any
+from dataclasses import dataclass
+from math import degrees, isfinite, isnan
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ...evaluation.in_units import in_units
 from ...loads.load import OverY
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
 from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import PeakStatus
-from ...support.progress import Steps
 from ...support.shown import printed
 from ...sweeps.peak_step import WORDS
-from ..content import Content
-from ..parts.peaks import SIDEWAYS, ClaimResult, PeakResult, peak_of, peaks_of
-from ..schema import SceneError
-from .blocks import Block, Section, Text, TextTable, cell, thinned
-from .design import axes_of, with_unit
+from ..content import RequestAnswer
+from ..document.blocks import ROWS, Block, Section, Text, TextTable, cell, thinned, with_unit
 
-DESIGNS, ROWS = 1000, 24  # that are searched for peaks nobody named, that are listed
+if TYPE_CHECKING:
+    from .peaks import Claim, Peak
+
+SIDEWAYS = ("ec", "F_X", "g_X")  # change sign where the mechanism is mirrored at the Y axis
 HUGE = 1e6  # percent: more is written as a power of ten
 SYMBOLS = {"absmax": "|{}|", "max": "max {}", "min": "min {}"}
 SIDE = "side: of a jump of a load, from which this is the limit: -1 smaller theta, +1 larger theta"
 MIRRORED = "+-: at ec = 0 the peak is at theta and at -theta; such a slope is + at one and - at the other"
 
 
-def peaks_of_outputs(content: Content) -> Iterator[PeakResult]:
-    """The largest magnitudes of outputs that no [[peak]] is about."""
-    if prod(len(values) for values in axes_of(content.inputs).values()) > DESIGNS:
-        return
-    for name in content.outputs:
-        if not any(one.quantity == name for one in content.peaks):
-            try:
-                requested = peak_of("report", {"quantity": name}, content.inputs, content.units)
-            except SceneError:  # a status, or a quantity of the whole design
-                continue
-            result = peaks_of(requested, content, Steps(1, None))
-            yield result._replace(dataset=in_units(result.dataset, content.units))
+class ClaimResult(NamedTuple):
+    """A claimed increase of a peak over its baseline and the computed one, in percent."""
+
+    claim: "Claim"
+    computed: float
+    agrees: bool
 
 
-def peak(result: PeakResult, units: UnitSystem) -> Section:
-    """A row for each design, its slopes, and the claims; in the units of its dataset."""
-    one = result.peak
-    known = quantity(one.quantity, one.state)
-    low, high = (f"{degrees(angle):g}" for angle in one.theta)
-    title = one.title or f"{WORDS[one.kind].capitalize()} of {one.quantity}, {known.meaning}"
-    blocks: list[Block] = [_designs(result, units)]
-    if not one.axes:
-        blocks += _gradient(result, units)
-    blocks += map(Text, [*_remarks(result), *(_claim(result, claim, units) for claim in result.claims)])
-    return Section(f"{title} (theta from {low} to {high} deg)", blocks)
+@dataclass(frozen=True, kw_only=True)
+class PeakResult(RequestAnswer):
+    """The peaks of all designs, labelled, and the checked claims about them.
+
+    `dataset` has over the designs' dimensions: `value`, `theta`, `side`, `status`, `value_wrt_<parameter>`
+    and, where there is a baseline, `increase` over it in percent. `mirrored` tells the designs with
+    ec = 0 that reach the peak at -theta as well, where the derivatives by what points to the side
+    (ec, F_X, g_X) have the other sign.
+    """
+
+    key = "peak"
+    peak: "Peak"
+    claims: tuple[ClaimResult, ...]
+    mirrored: NDArray[np.bool_]
+
+    def blocks(self, units: UnitSystem) -> Section:
+        """A row for each design, its slopes, and the claims."""
+        one = self.peak
+        known = quantity(one.quantity, one.state)
+        low, high = (f"{degrees(angle):g}" for angle in one.theta)
+        title = one.title or f"{WORDS[one.kind].capitalize()} of {one.quantity}, {known.meaning}"
+        blocks: list[Block] = [_designs(self, units)]
+        if not one.axes:
+            blocks += _gradient(self, units)
+        blocks += map(Text, [*_remarks(self), *(_claim(self, claim, units) for claim in self.claims)])
+        return Section(f"{title} (theta from {low} to {high} deg)", blocks)
 
 
 def _designs(result: PeakResult, units: UnitSystem) -> TextTable:

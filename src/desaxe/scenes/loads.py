@@ -5,29 +5,46 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
-from ...loads.elements import damper, over_V, spring
-from ...loads.load import Load
-from ...loads.motors import Motor, kloss, over_omega
-from ...loads.pressure import PISTON
-from ...loads.resolve import plain_units, settled
-from ...loads.tabulated import over_stroke, over_theta, over_Y
-from ...mechanism.quantity_units import SI, UnitSystem
-from ...mechanism.read import in_si
-from ...support.extras import MissingExtraError
-from ..schema import SceneError, shown
-from .values import Value, is_sum, values_of
+from ..loads.along_motion import OverSpeed
+from ..loads.elements import FREE, LINEAR, QUADRATIC, STIFFNESS, Damper, Spring, damper, over_V, spring
+from ..loads.load import Load, OverY, TableOverTheta
+from ..loads.motors import Motor, kloss, over_omega
+from ..loads.pressure import PISTON
+from ..loads.resolve import plain_units, settled
+from ..loads.stroke import OverStroke
+from ..loads.tabulated import over_stroke, over_theta, over_Y
+from ..mechanism.inputs import Input
+from ..mechanism.quantity_units import SI, UnitSystem
+from ..mechanism.read import in_si
+from ..support.extras import MissingExtraError
+from .reading.values import Value, is_sum, values_of
+from .schema import SceneError, shown
 
 RANGE = ("start", "stop", "num", "step")
 
 
 class LoadKind(NamedTuple):
-    """A maker of loads; keys of its columns, of their units, of its other options; an example of points."""
+    """A load of a scene: how it is read, and written.
+
+    maker    the call that makes it, and `made`, the class that it makes
+    columns  keys of its values beside a list of positions
+    units    keys of the units of positions and values
+    options  its other keys
+    along    the quantity of its positions
+    numbers  the rows of a load of a few numbers: its own, and those of its options
+    example  of its points
+    needs    a key that it cannot do without, and what that is
+    """
 
     maker: Any
+    made: Any = None
     columns: tuple[str, ...] = ()
     units: tuple[str, ...] = ()
     options: tuple[str, ...] = ()
+    along: str = ""
+    numbers: tuple[Input, ...] = ()
     example: str = ""
+    needs: tuple[str, str] | None = None
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -36,26 +53,26 @@ class LoadKind(NamedTuple):
 
 
 GAS = ("kind", *(row.name for row in PISTON))
-WAYS = ("outward", "inward")
+WAYS, BOTH = ("outward", "inward"), "with the way inward"
 KINDS = {
-    "over_theta": LoadKind(over_theta, ("values",), ("theta", "value"), (*GAS, "period"),
-                           "[[0, 0], [1.57, -400]]"),
-    "over_Y": LoadKind(over_Y, WAYS, ("Y", "value"), GAS,
-                       "[[0.2, 0], [0.37, -400]], or [[0.2, 0, 0], [0.37, -400, -50]] with the way inward"),
-    "over_stroke": LoadKind(over_stroke, WAYS, ("distance", "value"), (*GAS, "dead_centre"),
-                            "[[0, -400], [0.005, 0]], or [[0, -400, 0], [0.005, 0, 0]] with the way inward"),
-    "over_V": LoadKind(over_V, ("values",), ("V_C", "value"), ("kind",), "[[-2, 900], [0, 0], [2, -400]]"),
-    "spring": LoadKind(spring, options=("free",)),
-    "damper": LoadKind(damper, options=("quadratic",)),
+    "over_theta": LoadKind(over_theta, TableOverTheta, ("values",), ("theta", "value"), (*GAS, "period"),
+                           "theta", example="[[0, 0], [1.57, -400]]"),
+    "over_Y": LoadKind(over_Y, OverY, WAYS, ("Y", "value"), GAS, "Y",
+                       example="[[0.2, 0], [0.37, -400]], or [[0.2, 0, 0], [0.37, -400, -50]] " + BOTH),
+    "over_stroke": LoadKind(over_stroke, OverStroke, WAYS, ("distance", "value"), (*GAS, "dead_centre"), "Y",
+                            example="[[0, -400], [0.005, 0]], or [[0, -400, 0], [0.005, 0, 0]] " + BOTH,
+                            needs=("dead_centre", '"outer" or "inner", from which over_stroke measures')),
+    "over_V": LoadKind(over_V, OverSpeed, ("values",), ("V_C", "value"), ("kind",), "V_C",
+                       example="[[-2, 900], [0, 0], [2, -400]]"),
+    "spring": LoadKind(spring, Spring, options=("free",), numbers=(STIFFNESS, FREE),
+                       needs=("free", "the position along Y at which the spring has no force")),
+    "damper": LoadKind(damper, Damper, options=("quadratic",), numbers=(LINEAR, QUADRATIC)),
 }  # fmt: skip
 MOTORS = {
-    "over_omega": LoadKind(over_omega, (), ("omega", "torque"), ("kind",), "[[0, 30], [100, 0]]"),
+    "over_omega": LoadKind(over_omega, units=("omega", "torque"), options=("kind",),
+                           example="[[0, 30], [100, 0]]"),
     "kloss": LoadKind(kloss),
-}
-NEEDED = {
-    "over_stroke": ("dead_centre", '"outer" or "inner", from which over_stroke measures'),
-    "spring": ("free", "the position along Y at which the spring has no force"),
-}
+}  # fmt: skip
 
 
 def without_objects(data: Mapping[str, Any]) -> dict[str, Any]:
@@ -83,10 +100,9 @@ def force_of(key: str, name: str, written: Any, folder: Path | None, units: Unit
             _refuse(key, written, RANGE, lambda wrong: f"it belongs to {_kinds_with(wrong)}")
         return values_of(key, name, written, units)
     written = dict(written)
-    scale = written.pop("scale", 1.0)
-    if kind in NEEDED and NEEDED[kind][0] not in written:
-        option, meaning = NEEDED[kind]
-        raise SceneError(f"{key}.{option} is missing: {meaning}")
+    scale, needs = written.pop("scale", 1.0), KINDS[kind].needs
+    if needs is not None and needs[0] not in written:
+        raise SceneError(f"{key}.{needs[0]} is missing: {needs[1]}")
     load = _made(key, kind, KINDS[kind], written, folder, units)
     plain = plain_units(name, load, units) if isinstance(written[kind], str) else {}
     if plain:
