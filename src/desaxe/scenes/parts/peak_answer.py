@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from math import degrees, isfinite, isnan
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +18,6 @@ from ...sweeps.peak_step import WORDS
 from ..content import RequestAnswer
 from ..document.blocks import ROWS, Block, Section, Text, TextTable, cell, thinned, with_unit
 
-if TYPE_CHECKING:
-    from .peaks import Claim, Peak
-
 SIDEWAYS = ("ec", "F_X", "g_X")  # change sign where the mechanism is mirrored at the Y axis
 HUGE = 1e6  # percent: more is written as a power of ten
 SYMBOLS = {"absmax": "|{}|", "max": "max {}", "min": "min {}"}
@@ -31,7 +28,7 @@ MIRRORED = "+-: at ec = 0 the peak is at theta and at -theta; such a slope is + 
 class ClaimResult(NamedTuple):
     """A claimed increase of a peak over its baseline and the computed one, in percent."""
 
-    claim: "Claim"
+    claim: Any  # a Claim of `peaks`
     computed: float
     agrees: bool
 
@@ -47,7 +44,7 @@ class PeakResult(RequestAnswer):
     """
 
     key = "peak"
-    peak: "Peak"
+    peak: Any  # a Peak of `peaks`
     claims: tuple[ClaimResult, ...]
     mirrored: NDArray[np.bool_]
 
