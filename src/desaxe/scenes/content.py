@@ -37,7 +37,7 @@ class PlanRow(NamedTuple):
 
 
 class Sink(NamedTuple):
-    """Where a run goes: its progress, files that it may replace, the units of pictures."""
+    """The progress of a run, leave to replace files, and the units of its pictures."""
 
     steps: Steps
     overwrite: bool = False
@@ -182,7 +182,7 @@ class Run:
 
     @property
     def peaks(self) -> tuple[Any, ...]:
-        """Those of [[peak]]."""
+        """The answers of [[peak]]."""
         return self.of("peak")
 
     @property
