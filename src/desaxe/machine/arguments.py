@@ -10,7 +10,7 @@ from ..loads.resolve import settled
 from ..loads.units import function_in_si, slopes_in_si
 from ..mechanism import read
 from ..mechanism.catalogue import of_design
-from ..mechanism.inputs import INPUTS, OF_SHAFTS, OTHERS, Input
+from ..mechanism.inputs import UNITS, Input
 from ..mechanism.quantity_units import UnitSystem, si_unit
 from ..support.forks import IMPORTS
 from ..units.text import PLUS_MINUS, with_unit_of
@@ -25,7 +25,7 @@ def has_unit(name: str) -> bool:
     """True where an argument of this name, or of one slider of several, is a quantity with a unit."""
     if name.endswith("]"):
         name = name.partition("[")[0]
-    return name in INPUTS or name in OF_SHAFTS or name in OTHERS or name in VALUES or of_design(name)
+    return name in UNITS or name in VALUES or of_design(name)
 
 
 def in_si(system: UnitSystem, name: str, value: Any) -> Any:

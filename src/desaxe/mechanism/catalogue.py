@@ -8,11 +8,12 @@ from collections import ChainMap
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from ..support.forks import IMPORTS
 from ..support.shown import printed, shown
 from ..support.text_table import table
 from .names import LENGTHS, LOADS, PARAMETERS, WHOLE, joined, parts, sensitivity
 from .own import Register, Row, derived_names, leaves, register, used_by
+from .program import Variant, program_of
+from .spelling import meant
 
 
 class Quantity(NamedTuple):
@@ -118,18 +119,12 @@ def law_name(name: str) -> str:
 
 def inputs_of(name: str, state: bool = False, known: Register | None = None) -> tuple[str, ...]:
     """The inputs that a name depends on, all centres of mass given."""
-    with IMPORTS:
-        from .program import Variant, program_of
-
     law = (law_name(name) if state else name,)
     inputs = program_of(law, Variant(own=used_by(law, known))).inputs
     return tuple("omega" if state and given == "omega0" else given for given in inputs)
 
 
 def _unknown(name: str, state: bool, own: Register) -> str:
-    with IMPORTS:
-        from .spelling import meant
-
     names = _names(own)
     if len(name) > 100:
         return f"unknown quantity {shown(name)} (desaxe.quantities() lists them all)"

@@ -96,12 +96,12 @@ OF_SHAFTS = {
     "position": Input("position", "m", "from the middle of the shaft to a slider"),
     "I_shaft": Input("I_shaft", "kg*m^2", "moment of inertia of the shaft", 0.0, INPUTS["I_rod"].limit),
 }
-# Units of inputs and results that are no quantities of the catalogue.
-OTHERS = {
+# Units of all inputs, and of results that are no quantities of the catalogue.
+UNITS = {row.name: row.unit for row in (*INPUTS.values(), *OF_SHAFTS.values())} | {
     name: unit
     for unit, names in {
         "m/s": "V_outward V_inward",
-        "rad": "theta0 until phase firing angle theta_intervals",
+        "rad": "theta0 until angle theta_intervals",
         "rad/s": "omega_start omega_mean synchronous_speed",
         "s": "t t_end t_last times period",
         "N*m": "torque torque_mean torque_rms torque_peak starting_torque flywheel_torque "

@@ -6,6 +6,7 @@ from typing import ParamSpec, TypeVar
 
 from ..support.forks import IMPORTS
 from .inputs import INPUTS
+from .spelling import did_you_mean
 
 NEAREST = 3  # names that a message suggests
 P = ParamSpec("P")
@@ -21,9 +22,6 @@ def check_inputs(caller: str, inputs: Iterable[str], allowed: Sequence[str]) -> 
 
 def unknown_input(caller: str, name: str, allowed: Sequence[str]) -> TypeError:
     """The error for an unknown input: those that are most like it; all there are if none is."""
-    with IMPORTS:
-        from .spelling import did_you_mean
-
     if name == "as_quantity":
         way = f"a machine's {caller} has it, as in dx.Machine(**inputs).{caller}(..., as_quantity=True)"
         return TypeError(f"{caller}() has no as_quantity=: {way}")

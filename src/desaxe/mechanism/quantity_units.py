@@ -14,7 +14,7 @@ from typing import Any
 from ..support.computed import computed_once
 from ..units.system import DIMENSIONS, Conversion, conversions_by_unit, read_units, size_in
 from .catalogue import quantity
-from .inputs import INPUTS, OF_SHAFTS, OTHERS
+from .inputs import UNITS
 from .names import parts
 from .own import register
 
@@ -117,12 +117,8 @@ def si_unit(name: str) -> str:
         return SI.of(name).unit
     if name.endswith("]"):
         name = name.partition("[")[0]
-    if name in INPUTS:
-        return INPUTS[name].unit
-    if name in OF_SHAFTS and name != "phase":
-        return OF_SHAFTS[name].unit
-    if name in OTHERS:
-        return OTHERS[name]
+    if name in UNITS:
+        return UNITS[name]
     if name.startswith("theta_"):
         return "rad"
     try:

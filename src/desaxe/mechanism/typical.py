@@ -3,7 +3,7 @@
 from math import inf, pi
 from typing import NamedTuple
 
-from .inputs import INPUTS, OF_SHAFTS, OTHERS
+from .inputs import UNITS
 
 FORCES = ("F_X", "F_Y")
 FARTHEST = 20.0  # m: no size of a mechanism is larger
@@ -29,9 +29,8 @@ MASS = Typical(1e5, 1e8, '"{number:.6g} g"', "kg")
 GRAVITY = Typical(100.0, 1e5, '"{earth:.2f} m/s^2"', "m/s^2")
 _BY_UNIT = {kind.unit: kind for kind in (TURNS, SIZE, SPEED, MASS, GRAVITY)}
 SHARE, MOST_PERCENT = Typical(3.0, inf, '"{number:.6g} %"'), 100.0
-_UNITS = {row.name: row.unit for row in (*INPUTS.values(), *OF_SHAFTS.values())} | OTHERS
 KINDS = {
-    **{name: _BY_UNIT[unit] for name, unit in _UNITS.items() if unit in _BY_UNIT},
+    **{name: _BY_UNIT[unit] for name, unit in UNITS.items() if unit in _BY_UNIT},
     "Y": SIZE,
     "mu": Typical(10.0, 100.0, "{hundredth:.6g}"),
     "breakdown_slip": SHARE,

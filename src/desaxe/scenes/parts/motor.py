@@ -13,7 +13,7 @@ from ...design.steady.steady import FLUCTUATION, FLYWHEEL, steady
 from ...evaluation.labels import input_attributes
 from ...loads.load import Load
 from ...loads.motors import Motor
-from ...mechanism.inputs import OTHERS, Input
+from ...mechanism.inputs import UNITS, Input
 from ...mechanism.names import LENGTHS
 from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import SteadyStatus
@@ -65,7 +65,7 @@ class OnMotor:
         inputs: dict[str, Any] = {**self.fixed, **dict(zip(self.axes, arrays, strict=True))}
         result = steady(torque=self.torque, branch=content.branch, **inputs)
         names = [*NUMBERS, "flywheel_inertia", "status"]
-        values = {n: (result[n], {"units": OTHERS.get(n, "1"), "long_name": MEANINGS[n]}) for n in names}
+        values = {n: (result[n], {"units": UNITS.get(n, "1"), "long_name": MEANINGS[n]}) for n in names}
         about = {"torque": repr(self.torque)}
         dataset = content.labelled(values, self.axes, self.fixed, about, _attributes)
         return MotorResult(asked=self, dataset=dataset, found=result)
