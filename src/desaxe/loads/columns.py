@@ -102,6 +102,8 @@ def _first_that_fits(what: str, value: Any, units: tuple[str, ...]) -> tuple[str
 
 
 def _finite(what: str, values: list[Any]) -> list[float]:
+    if {*map(type, values)} == {float} and all(map(isfinite, values)):
+        return [*values]
     result = []
     for value in values:
         try:

@@ -25,28 +25,29 @@ class Steps:
 
     def next(self, what: str) -> None:
         """The next step begins."""
-        if self.watch is not None:
-            self.watch(self.done, self.total, what)
+        self.report(what)
         self.done += 1
 
+    def report(self, what: str) -> None:
+        """Call the callback, if there is one."""
+        if self.watch is not None:
+            self.watch(self.done, self.total, what)
 
-class Portions:
+
+class Portions(Steps):
     """Counts what is done of a large number, and tells beforehand and on the way what the rest takes."""
 
     def __init__(self, total: int, what: str, watch: Progress | None) -> None:
-        self.done, self.found, self.total, self.what, self.watch = 0, 0, total, what, watch
-        self.begun = monotonic()
-        if watch is not None:
-            watch(0, total, what)
+        super().__init__(total, watch)
+        self.what, self.computed, self.begun = what, 0, monotonic()
+        self.report(what)
 
     def add(self, count: int, computed: bool = True) -> None:
         """Count designs, or other parts, that are done now; those that were there already take no time."""
-        if self.watch is None:
-            return
         self.done = min(self.total, self.done + count)
-        self.found += 0 if computed else count
-        left = (monotonic() - self.begun) * (self.total - self.done) / max(1, self.done - self.found)
-        self.watch(self.done, self.total, f"{self.what}, about {_time(left)} left")
+        self.computed += count if computed else 0
+        left = (monotonic() - self.begun) * (self.total - self.done) / max(1, self.computed)
+        self.report(f"{self.what}, about {_time(left)} left")
 
 
 def _time(seconds: float) -> str:

@@ -2,39 +2,28 @@
 
 from collections import OrderedDict
 from contextlib import suppress
-from typing import Generic, TypeVar
+from typing import Any, TypeVar
 
 Key = TypeVar("Key")
 Value = TypeVar("Value")
 
 
-class Recent(Generic[Key, Value]):
+class Recent(OrderedDict[Key, Value]):
     """A mapping of at most `most` values; a new one replaces the least recently used."""
 
     def __init__(self, most: int) -> None:
+        super().__init__()
         self.most = most
-        self._values: OrderedDict[Key, Value] = OrderedDict()
 
-    def __len__(self) -> int:
-        return len(self._values)
-
-    def __contains__(self, key: Key) -> bool:
-        return key in self._values
-
-    def get(self, key: Key) -> Value | None:
-        """The value of a key, now the most recently used; None if absent."""
-        result = self._values.get(key)
-        if result is not None:
-            with suppress(KeyError):  # another thread has just put it out
-                self._values.move_to_end(key)
-        return result
+    def get(self, key: Key, default: Any = None) -> Value | Any:
+        """The value of a key, now the most recently used."""
+        with suppress(KeyError):  # another thread may have put it out
+            self.move_to_end(key)
+            return self[key]
+        return default
 
     def __setitem__(self, key: Key, value: Value) -> None:
-        self._values[key] = value
-        while len(self._values) > self.most:
+        super().__setitem__(key, value)
+        while len(self) > self.most:
             with suppress(KeyError):
-                self._values.popitem(last=False)
-
-    def clear(self) -> None:
-        """Forget all values."""
-        self._values.clear()
+                self.popitem(last=False)

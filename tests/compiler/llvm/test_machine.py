@@ -163,7 +163,7 @@ def test_forgotten_code_is_freed(monkeypatch):
     for name in ("Y", "V_C", "a_C", "phi"):
         for _ in range(2):
             dx.evaluate(name, **inputs)
-        codes.append(weakref.ref([*executor._KEPT._values.values()][-1].code))
+        codes.append(weakref.ref([*executor._KEPT.values()][-1].code))
     gc.collect()
     assert [code() is None for code in codes] == [True, True, False, False]
 
