@@ -16,7 +16,7 @@ from ..mechanism.names import LENGTHS, sensitivity
 from ..mechanism.quantity_units import SI, unit_of
 from ..runtime.request import check_common
 from ..support.forks import IMPORTS
-from .feasibility.arrays import KINDS, of_arrays
+from .feasibility.feasibility import KINDS, of_arrays
 from .measures import Measure, checked, measured, text_of
 
 if TYPE_CHECKING:

@@ -27,8 +27,7 @@ from ..peaks.designs import KINDS
 from ..peaks.peak import peak
 from ..runtime.request import as_number
 from ..support.shown import shown
-from .events.arrays import events_of_arrays
-from .events.closed_form import VELOCITIES
+from .events.events import VELOCITIES, events_of_arrays
 from .turn.cycle import MOST_TURNS, Cycle, input_rows, integrated
 
 Array = NDArray[np.float64]

@@ -1,6 +1,4 @@
 """Dead centres, strokes and extreme angles.
 
-events       the public call
-closed_form  values and derivatives from the closed form; the largest speeds
-arrays       many designs, in NumPy
+events  the public call, for one design in plain Python and for many in NumPy
 """

@@ -1,18 +1,35 @@
 """`events`: the dead centres of a design, its strokes, and the extremes of its rod and slider."""
 
-from collections.abc import Mapping
-from math import nan
-from typing import Any
+from collections.abc import Callable, Mapping
+from math import copysign, inf, nan, pi, ulp
+from typing import Any, NamedTuple
 
-from ...mechanism.closed.dead_centres import DEAD_CENTRES
+from ...evaluation.evaluate import evaluate
+from ...mechanism.closed.dead_centres import DEAD_CENTRES, PLACES, SENSITIVITIES
 from ...mechanism.closed.functions import closed_form
-from ...mechanism.names import LENGTHS
+from ...mechanism.names import LENGTHS, WHOLE, sensitivity
 from ...mechanism.quantity_units import slopes_of, unit_of, units_by_name
 from ...mechanism.status import TurnStatus
 from ...runtime.request import as_number, check_common, with_known_inputs
 from ...support.answer import Answer
 from ...support.forks import IMPORTS
-from .closed_form import VELOCITIES, DesignEvents, velocity
+from ...support.roots import root, roots
+
+VELOCITIES = {"V_outward": 1, "V_inward": -1}  # name -> direction along the stroke
+BESIDE = 4.0 * ulp(pi)  # rad: next to an angle, on whichever side of it rounding has put that
+SPEEDS = ["V_C", *(f"V_C_wrt_{p}" for p in (*LENGTHS, "omega0"))]
+NAMES = (*WHOLE, *SENSITIVITIES, *PLACES)
+
+
+class Numbers(NamedTuple):
+    """How the values of designs are computed with: `FLOATS` of one in plain Python, arrays in NumPy."""
+
+    choose: Callable[[Any, Any, Any], Any]
+    root: Callable[..., Any]  # of a function between two ends, and its values there
+    copysign: Callable[[float, Any], Any]
+
+
+FLOATS = Numbers(lambda condition, a, b: a if condition else b, lambda f, a, b, *_: root(f, a, b), copysign)
 
 
 @with_known_inputs
@@ -62,25 +79,102 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
     inputs = {"ec": ec, "AB": AB, "BC": BC, "omega0": 1.0 if omega0 is None else omega0}
     numbers = {name: as_number(name, value, tuple(inputs), ("events",)) for name, value in inputs.items()}
     if None in numbers.values():
-        with IMPORTS:
-            from .arrays import events_of_arrays
+        return Answer(events_of_arrays(inputs, int(branch), omega0 is not None), units, TurnStatus)
+    lengths = tuple(float(numbers[name] or 0.0) for name in LENGTHS)
+    omega = float(numbers["omega0"] or 0.0)
+    outputs = closed_form(DEAD_CENTRES, branch=float(branch)).point(*lengths, -1.0 if omega < 0.0 else 1.0)
+    parts = FLOATS, dict(zip(NAMES, outputs, strict=False)), outputs[-1], lengths, omega
+    return Answer(_results(*parts, int(branch), omega0 is not None), units, TurnStatus)
 
-        found_of = events_of_arrays(inputs, int(branch), omega0 is not None)
-        return Answer(found_of, units, TurnStatus)
-    e, crank, rod, omega = (float(value or 0.0) for value in numbers.values())
-    lengths, forward = {"ec": e, "AB": crank, "BC": rod}, -1 if omega < 0.0 else 1
-    found = DesignEvents(closed_form(DEAD_CENTRES, branch=float(branch)).point(e, crank, rod, float(forward)))
-    slow = int(branch) * forward * ((e > 0.0) - (e < 0.0)) if found.status != 1 else 0
-    result, gradient = {**found.values, "slow_stroke": slow, **found.places}, found.gradient
-    parameters = (*LENGTHS, "omega0") if omega0 is not None else LENGTHS
-    for name, direction in VELOCITIES.items():
-        value, theta, *slopes = [nan] * 6
-        if found.status != 1:
-            sharp = found.status == 2
-            value, theta, *slopes = velocity(direction, found.values, int(branch), omega, lengths, sharp)
-        result |= {name: value, f"theta_{name}": theta}
-        gradient[name] = dict(zip(parameters, slopes, strict=False))
-    return Answer({**result, "gradient": gradient, "status": found.status}, units, TurnStatus)
+
+def events_of_arrays(
+    inputs: dict[str, Any], branch: int, with_speed: bool, with_velocities: bool = True
+) -> dict[str, Any]:
+    """The results of `events` in the broadcast shape of the inputs."""
+    with IMPORTS:
+        import numpy as np
+
+        from ...evaluation.arrays import as_array, broadcast_shape
+        from ..feasibility.feasibility import only_good
+
+    arrays = {n: as_array(n, value, tuple(inputs), ("events",)) for n, value in inputs.items()}
+    shape = broadcast_shape(arrays)
+    ec, AB, BC, omega = (np.broadcast_to(a, shape) for a in arrays.values())
+    bad, good = only_good(ec, AB, BC)
+    bad |= ~np.isfinite(omega)
+    *lengths, omega = (np.where(bad, np.nan, a) for a in (*good, omega))
+    outputs = closed_form(DEAD_CENTRES, branch=float(branch)).arrays(
+        *lengths, np.where(omega < 0.0, -1.0, 1.0)
+    )
+    outputs = [np.array(np.broadcast_to(output, shape)) for output in outputs]
+    status = np.where(bad, 4, outputs[-1]).astype(np.int8)
+    numbers = Numbers(np.where, roots, np.copysign)
+    with np.errstate(invalid="ignore"):
+        parts = numbers, dict(zip(NAMES, outputs, strict=False)), status, tuple(lengths), omega
+        result = _results(*parts, branch, with_speed, with_velocities)
+    return {**result, "slow_stroke": result["slow_stroke"].astype(np.int8)}
+
+
+def _results(
+    numbers: Numbers, values: dict[str, Any], status: Any, lengths: tuple[Any, ...], omega: Any, branch: int,
+    with_speed: bool, with_velocities: bool = True,
+) -> dict[str, Any]:  # fmt: skip
+    """The results of designs from the outputs of the closed form by name."""
+    ec, turning = lengths[0], numbers.choose(omega < 0.0, -branch, branch)
+    slow = numbers.choose((status == 0) | (status == 2), turning * (1 * (ec > 0.0) - 1 * (ec < 0.0)), 0)
+    gradient = {name: {p: values[sensitivity(name, p)] for p in LENGTHS} for name in WHOLE}
+    result = {name: values[name] for name in WHOLE}
+    result |= {"slow_stroke": slow, **{name: values[name] for name in PLACES}}
+    for name, direction in VELOCITIES.items() if with_velocities else ():
+        here = _velocity(numbers, direction, values, status, lengths, omega, branch)
+        result[name], result[f"theta_{name}"], *slopes = here
+        gradient[name] = dict(zip((*LENGTHS, *(["omega0"] if with_speed else [])), slopes, strict=False))
+    return {**result, "gradient": gradient, "status": status}
+
+
+def _stroke_ends(values: dict[str, Any], side: Any, branch: int, numbers: Numbers) -> tuple[Any, Any]:
+    """The crank angles, ascending, between which Y grows (side 1) or falls (-1) as the angle does.
+
+    At a change point the angle next to it within the stroke is meant: the speed jumps there. A slider whose
+    crank is as long as its rod, in line with A, rests there for half of the turn.
+    """
+    outer, inner = values["theta_outer"], values["theta_inner"]
+    jumps = values["Y_inner"] == 0.0
+    within = BESIDE * jumps + (pi / 2) * (jumps & (values["advance_angle"] == pi))
+    inner = inner + side * branch * within
+    top, bottom = (outer, inner) if branch > 0 else (inner, outer)
+    return numbers.choose(side > 0, bottom - 2.0 * pi, top), numbers.choose(side > 0, top, bottom)
+
+
+def _velocity(
+    numbers: Numbers, direction: int, values: dict[str, Any], status: Any, lengths: tuple[Any, ...],
+    omega: Any, branch: int,
+) -> list[Any]:  # fmt: skip
+    """The largest |V_C| between two dead centres: value, crank angle, derivatives by lengths and omega0.
+
+    That is where the acceleration vanishes; without a crank, or at a change point, it may be an end itself,
+    from which it grows as a root of the margin.
+    """
+    if numbers is FLOATS and status == 1:
+        return [nan] * 6
+    design = dict(zip(LENGTHS, lengths, strict=True))
+
+    def at(theta: Any, names: Any, omega0: Any = 1.0) -> Any:
+        return evaluate(names, theta=theta, omega0=omega0, branch=branch, **design)
+
+    side = direction * branch  # of Y
+    first, last = _stroke_ends(values, numbers.choose(omega < 0.0, -side, side), branch, numbers)
+    before, after = at(first, "a_C"), at(last, "a_C")
+    crosses = before * after < 0.0
+    inside = numbers.root(lambda x: at(x, "a_C"), first, numbers.choose(crosses, last, first), before, after)
+    sharper = abs(at(first, "V_C")) >= abs(at(last, "V_C"))
+    theta = numbers.choose(crosses, inside, numbers.choose(sharper, first, last))
+    theta = numbers.choose(status == 1, nan, theta)
+    here = at(theta, SPEEDS, omega)
+    value, *slopes = (side * here[name] for name in SPEEDS)
+    steep = (status == 2) & (value != 0.0) & (not crosses if numbers is FLOATS else ~crosses)
+    slopes[:3] = [numbers.choose(steep, numbers.copysign(inf, slope), slope) for slope in slopes[:3]]
+    return [value, theta + 2.0 * pi * (theta < -pi / 2) - 2.0 * pi * (theta > 1.5 * pi), *slopes]
 
 
 def _units_per_angle(result: Mapping[str, Any]) -> dict[str, Any]:

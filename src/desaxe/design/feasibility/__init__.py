@@ -1,5 +1,4 @@
 """Feasibility: can a design be assembled, can it turn.
 
-feasibility  one design, in plain Python
-arrays       many designs, in NumPy
+feasibility  one design in plain Python, many in NumPy
 """

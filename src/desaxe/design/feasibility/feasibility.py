@@ -2,15 +2,24 @@
 
 from collections.abc import Mapping
 from math import fsum, ulp
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.closed.limits import CHANGE_POINT_ULPS, LIMITS, in_intervals
+from ...mechanism.inputs import LEAST
 from ...mechanism.quantity_units import slopes_of, units_of
 from ...mechanism.status import TurnStatus
 from ...runtime.request import as_number, with_known_inputs
 from ...support.answer import Answer
 from ...support.forks import IMPORTS
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+KINDS = ("crank", "change point", "rocker", "none", "bad input")
 
 
 @with_known_inputs
@@ -46,7 +55,12 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
         name: as_number(name, value, tuple(inputs), ("feasibility",)) for name, value in inputs.items()
     }
     if None in lengths.values():
-        return Answer(_of_arrays(inputs), _units, TurnStatus)
+        with IMPORTS:
+            from ...evaluation.arrays import as_array, broadcast_shape
+
+        arrays = {n: as_array(n, value, tuple(inputs), ("feasibility",)) for n, value in inputs.items()}
+        broadcast_shape(arrays)
+        return Answer(of_arrays(*arrays.values()), _units, TurnStatus)
     ec, AB, BC = lengths.values()
     *angles, status, _, link_margin = closed_form(LIMITS).point(ec, AB, BC)
     margin = fsum((BC, -AB, -abs(ec)))  # rounded once, ties too
@@ -71,11 +85,33 @@ def _units(result: Mapping[str, Any]) -> dict[str, Any]:
     return {**units_of(("margin", "theta_intervals")), "gradient": slopes_of("margin", result["gradient"])}
 
 
-def _of_arrays(inputs: dict[str, Any]) -> dict[str, Any]:
+def only_good(ec: "Array", AB: "Array", BC: "Array") -> "tuple[NDArray[np.bool_], list[Array]]":
+    """Mask of the designs with a bad length; the lengths in their broadcast shape, NaN for those."""
     with IMPORTS:
-        from ...evaluation.arrays import as_array, broadcast_shape
-        from .arrays import of_arrays
+        import numpy as np
 
-    arrays = {name: as_array(name, value, tuple(inputs), ("feasibility",)) for name, value in inputs.items()}
-    broadcast_shape(arrays)
-    return of_arrays(*arrays.values())
+    ec, AB, BC = np.broadcast_arrays(ec, AB, BC)
+    good = np.isfinite(ec) & np.isfinite(AB) & np.isfinite(BC) & (LEAST["AB"] <= AB) & (LEAST["BC"] <= BC)
+    return ~good, [np.where(good, length, np.nan) for length in (ec, AB, BC)]
+
+
+def of_arrays(ec: "Array", AB: "Array", BC: "Array") -> dict[str, Any]:
+    """The results of `feasibility` in the broadcast shape."""
+    with IMPORTS:
+        import numpy as np
+
+    bad, (ec, AB, BC) = only_good(ec, AB, BC)
+    *angles, status, margin, link_margin = closed_form(LIMITS).arrays(ec, AB, BC)
+    intervals = np.stack(np.broadcast_arrays(*angles), axis=-1).reshape(*bad.shape, 2, 2)
+    near = np.abs(margin) <= CHANGE_POINT_ULPS * np.spacing(BC)
+    turns, some = margin >= 0.0, np.isfinite(angles[0])
+    one = np.where(bad, np.nan, 1.0)
+    return {
+        "margin": margin,
+        "gradient": {"ec": -np.sign(ec) * one, "AB": -one, "BC": one},
+        "can_turn": turns,
+        "theta_intervals": intervals,
+        "kind": np.array(KINDS)[np.select([bad, near, turns, some], [4, 1, 0, 2], 3)],
+        "grashof": link_margin >= 0.0,
+        "status": np.where(bad, 4, status).astype(np.int8),
+    }
