@@ -11,6 +11,7 @@ edge to edge that are halved until value and derivatives are resolved.
 
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from ..evaluation.evaluate import evaluate
 from ..evaluation.reductions.own_measure import OwnMeasure
 from ..loads.angles import turns_of
+from ..loads.load import LoadWarning
 from ..mechanism.catalogue import has, of_design, quantities, quantity
 from ..mechanism.closed.limits import margin_of
 from ..mechanism.inputs import INPUTS
@@ -171,7 +173,7 @@ def measured(
         elif isinstance(measure, str):
             own = None if measure in message else _own(measure, designs, branch)
             result[measure] = own or Measured(message[measure], message["gradient"][measure])
-        elif isinstance(measure, OwnMeasure):
+        elif callable(measure):
             result[measure] = Measured(*measure(designs))
         elif measure[0] == "at":
             result[measure] = Measured(*at_angle(measure[1], measure[2], designs, branch))
@@ -179,7 +181,9 @@ def measured(
             result[measure] = Measured(*average(measure[0], measure[1], designs, branch))
         else:
             kind, name = measure
-            top = peak(name, kind=kind, branch=branch, **designs)
+            with catch_warnings():
+                simplefilter("ignore", LoadWarning)  # of an array of forces: here they are of designs
+                top = peak(name, kind=kind, branch=branch, **designs)
             slopes = {p: np.asarray(slope) for p, slope in top["gradient"].items()}
             result[measure] = Measured(np.asarray(top["value"]), slopes)
     return result

@@ -17,8 +17,7 @@ from ..support.deadline import Deadline
 from ..support.panels import Array, Panels, resolved
 from ..support.shown import shown
 from .measures import Measure, Measured, checked, is_named, measured, text_of
-from .optimisation.objectives import space_of, value_of
-from .optimisation.problem import Space
+from .optimisation.problem import Space, space_of, value_of
 
 EQUAL = 1e-13  # of the largest value: a difference that is none
 INSIDE = 1e-12  # of the range: so far within the lengths of a crank that turns

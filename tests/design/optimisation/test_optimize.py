@@ -77,6 +77,21 @@ def test_a_kink_between_two_angles():
     assert np.isnan(result["multipliers"]["ec"])
 
 
+def test_a_kink_that_a_search_reaches_from_one_side():
+    """Two peaks of the torque are equal under one side force, by the torque at fixed angles."""
+    points = [0.26, 3.16, 3.2, 4.18, 5.25], [1550.0, -1060.0, 180.0, 1220.0, 930.0]
+    press = {"ec": 0.00523, "AB": 0.0542, "BC": 0.188, "omega0": 5.63, "m_slider": 2.74, "m_rod": 1.98}
+    press |= {"mu": 0.0719, "F_Y": dx.over_theta(*points, kind="linear")}
+    result = dx.optimize(minimize=("max", "T_in"), over={"F_X": (-3000, 3000)}, starts=1, **press)
+    assert (result["status"], result["active"]) == (0, {})
+    assert "at a kink of the objective" in result["message"]
+    theta = np.linspace(0.0, 2 * np.pi, 4001)
+    force = (result["F_X"] + np.array([-1.0, 0.0, 1.0]))[:, None]
+    left, best, right = dx.evaluate("T_in", theta=theta, F_X=force, **press).max(axis=1)
+    assert best < min(left, right)
+    assert result["value"] == pytest.approx(best, rel=1e-5)
+
+
 def scanned(kind, name, ec, BC, keep, sense):
     """The best of a fine grid, by values alone."""
     ec, BC = np.meshgrid(ec, BC, indexing="ij")
@@ -251,7 +266,7 @@ def test_how_far_a_design_is_from_turning():
     ],
 )
 def test_bounds_within_which_nothing_turns_are_told_without_a_search(over, keep, message, monkeypatch):
-    monkeypatch.setattr("desaxe.design.optimisation.one_objective.LocalSearch", None)
+    monkeypatch.setattr("desaxe.design.optimisation.optimize.LocalSearch", None)
     for goal in (("absmax", "a_C"), ["stroke", ("absmax", "a_C")]):
         result = dx.optimize(minimize=goal, over=over, keep=keep, BC=0.2, omega0=10.0)
         assert np.all(result["status"] == 1)

@@ -102,11 +102,9 @@ def events_of_arrays(
     ec, AB, BC, omega = (np.broadcast_to(a, shape) for a in arrays.values())
     bad, good = only_good(ec, AB, BC)
     bad |= ~np.isfinite(omega)
-    *lengths, omega = (np.where(bad, np.nan, a) for a in (*good, omega))
-    outputs = closed_form(DEAD_CENTRES, branch=float(branch)).arrays(
-        *lengths, np.where(omega < 0.0, -1.0, 1.0)
-    )
-    outputs = [np.array(np.broadcast_to(output, shape)) for output in outputs]
+    lengths, omega = [np.where(bad, np.nan, length) for length in good], np.where(bad, np.nan, omega)
+    form, turning = closed_form(DEAD_CENTRES, branch=float(branch)), np.where(omega < 0.0, -1.0, 1.0)
+    outputs = [np.array(np.broadcast_to(output, shape)) for output in form.arrays(*lengths, turning)]
     status = np.where(bad, 4, outputs[-1]).astype(np.int8)
     numbers = Numbers(np.where, roots, np.copysign)
     with np.errstate(invalid="ignore"):

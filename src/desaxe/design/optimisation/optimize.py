@@ -1,8 +1,16 @@
-"""`optimize`: the best design within limits, with the multipliers of the limits; or why there is none."""
+"""`optimize`: the best design within limits, with the multipliers of the limits; or why there is none.
+
+An optimum is searched ever nearer to the limit of turning. Along the Pareto front of several objectives the
+first is optimised under bounds on each of the others (epsilon constraints), which go from the worst that the
+optimum of another one leaves of them to their own best. Designs that another one beats are left out.
+"""
 
 from collections.abc import Mapping
 from functools import partial
+from itertools import product
 from typing import Any
+
+import numpy as np
 
 from ...mechanism.keywords import with_known_keywords
 from ...runtime.request import check_common, check_sliders
@@ -11,11 +19,15 @@ from ...support.checks import whole_number
 from ...support.deadline import Deadline
 from ...support.extras import explained
 from ...support.signals import put_off
-from .objectives import goals_of, limits_of, space_of
+from ..measures import measured
+from .problem import LOWER, UPPER, Array, Goal, Limit, Space, goals_of, limits_of, side_limits, space_of
 
 with put_off(), explained("optimize", "design"):
-    from .one_objective import front, solved
-    from .optimum import units_of_optimum
+    from .optimum import FOUND, NONE, UNSURE, none_turns, result_of, units_of_optimum
+    from .search import CLOSE, SATISFIED, SETTLED, Candidate, LocalSearch
+
+EDGES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # of the rod: how near to the limit of turning the search goes
+GROWS = 0.2  # the power of the margin from which growth towards the limit is no rounding
 
 
 @with_known_keywords
@@ -96,3 +108,122 @@ def optimize(
         else:
             result = solved(goals[0], space, limits, starts, seed)
     return Answer(result, partial(units_of_optimum, goals))
+
+
+def solved(goal: Goal, space: Space, limits: list[Limit], starts: int, seed: int) -> dict[str, Any]:
+    """The optimum of one objective; see `optimize`."""
+    none = none_turns(space, limits)
+    if none is not None:
+        return none
+    rod = space.fixed.get("BC") or float(space.high[space.names.index("BC")])
+    own = any(c.key == "margin" and c.side != UPPER and c.bound > EDGES[-1] * rod for c in limits)
+    history: list[tuple[float, float]] = []
+    places: list[Array] = []
+    for edge in EDGES:
+        implied = [] if own else side_limits(None, "margin", edge * rod, LOWER)
+        # After the first time the best is followed towards the edge.
+        result, search = best = _best(goal, space, [*limits, *implied], 0 if places else starts, seed, places)
+        if result.violation > SATISFIED and _misses_implied(result, search):
+            continue  # a margin that is smaller yet may keep all limits
+        at_edge = any(c.key is None and m for c, m in zip(search.limits, result.multipliers, strict=False))
+        history.append((edge, abs(result.value)))
+        if result.violation > SATISFIED or not at_edge or _power(history) > GROWS:
+            break
+        places = [result.z]
+    return result_of(goal, space, *best, _power(history) > GROWS)
+
+
+def _best(
+    goal: Goal, space: Space, limits: list[Limit], starts: int, seed: int, places: list[Array]
+) -> tuple[Candidate, LocalSearch]:
+    """The best of all local searches, to its last digits."""
+    candidates = []
+    for pieces in goal.problems:
+        search = LocalSearch(space, pieces, limits, seed)
+        for start in (*places, *search.starts(starts)):
+            candidates += [(search.run(start), search), (search.judged(start), search)]
+        # Towards the limit of turning a search may stall, so steep does it get: look along that limit too.
+        near, _ = min(candidates, key=_rank)
+        value = search.scaled(near.z)[0][search.count :]
+        stalled = near.residual > SETTLED or any(value[k] < CLOSE for k in search.margins)
+        for k in search.margins if stalled else ():
+            candidates.append((search.run(search.at_limit(near.z, k), k), search))
+    result, search = min(candidates, key=_rank)
+    if result.violation > SATISFIED:
+        nearest = search.nearest(result, seed)
+        if nearest.violation > SATISFIED:
+            return nearest, search
+        result, search = min(*candidates, (nearest, search), (search.run(nearest.z), search), key=_rank)
+    return search.settled(result), search
+
+
+def _misses_implied(result: Candidate, search: LocalSearch) -> bool:
+    """True if the design breaks the margin that is implied."""
+    value = search.scaled(result.z)[0][search.count :]
+    return any(limit.key is None and v < 0.0 for limit, v in zip(search.limits, value, strict=True))
+
+
+def _rank(candidate: tuple[Candidate, LocalSearch]) -> tuple[float, float]:
+    result = candidate[0]
+    return max(result.violation, SATISFIED), result.value
+
+
+def _power(history: list[tuple[float, float]]) -> float:
+    """The power of 1/margin with which the optimum has grown over the last two steps; 0 before."""
+    if len(history) < 3:
+        return 0.0
+    edges, values = np.log(np.array(history[-3:])).T
+    return float(np.min(np.diff(values) / -np.diff(edges)))
+
+
+def front(
+    goals: list[Goal], space: Space, limits: list[Limit], starts: int, seed: int, points: int
+) -> dict[str, Any]:
+    """Designs along the front; see `optimize`."""
+    found: list[dict[str, Any]] = []
+    for goal in goals:
+        found.append(solved(goal, space, limits, starts, seed))
+        if found[-1]["status"] not in (FOUND, UNSURE):
+            status = np.full(1, found[-1]["status"] or NONE, np.int8)
+            return {**_front(goals, space, [], np.empty((0, len(goals)))), "status": status,
+                    "message": found[-1]["message"]}  # fmt: skip
+    senses = np.array([goal.sense for goal in goals])
+    corners = np.array([_values(goals, space, result) for result in found])
+    worst = np.min(corners * senses, axis=0) * senses
+    for bounds in product(*(np.linspace(worst[k], corners[k, k], points) for k in range(1, len(goals)))):
+        kept = [*limits]
+        for goal, bound in zip(goals[1:], bounds, strict=True):
+            side = LOWER if goal.sense > 0 else UPPER
+            kept += side_limits(goal.measure, goal.measure, float(bound), side)
+        found.append(solved(goals[0], space, kept, starts, seed))
+    found = [result for result in found if result["status"] in (FOUND, UNSURE)]
+    values = np.array([_values(goals, space, result) for result in found])
+    rows = _undominated(values * senses)
+    return _front(goals, space, [found[row] for row in rows], values[rows])
+
+
+def _front(goals: list[Goal], space: Space, kept: list[dict[str, Any]], values: Array) -> dict[str, Any]:
+    """The designs of a front as arrays."""
+    return {
+        **{name: np.array([result[name] for result in kept]) for name in space.names},
+        "value": {goal.key: values[:, k] for k, goal in enumerate(goals)},
+        "status": np.array([result["status"] for result in kept], np.int8),
+        "residual": np.array([result["residual"] for result in kept]),
+        "message": f"{len(kept)} design{'s' if len(kept) > 1 else ''} on the Pareto front",
+    }
+
+
+def _values(goals: list[Goal], space: Space, result: dict[str, Any]) -> list[float]:
+    designs = {**space.fixed, **{name: np.array([result[name]]) for name in space.names}}
+    found = measured([goal.measure for goal in goals], designs, space.branch)
+    return [float(np.reshape(found[goal.measure].value, -1)[0]) for goal in goals]
+
+
+def _undominated(gains: Any) -> list[int]:
+    """Indices of the non-dominated rows, sorted by the first objective, its best first."""
+    slack = 1e-9 * np.maximum(np.abs(gains).max(axis=0), 1e-300)
+    kept: list[int] = []
+    for row in np.lexsort(-gains.T[::-1]):
+        if not any((gains[other] >= gains[row] - slack).all() for other in kept):
+            kept.append(int(row))
+    return kept

@@ -1,6 +1,6 @@
 """The result of `optimize`: the design, its active limits with their multipliers, a message."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import fsum
 from typing import Any
 
@@ -12,13 +12,12 @@ from ...mechanism.names import LENGTHS
 from ...mechanism.quantity_units import slopes_of, unit_of, units_by_name
 from ...mechanism.status import OptimizeStatus
 from ..measures import Measure, checked, text_of
-from .objectives import Goal, problems
-from .problem import EQUAL, LOWER, UPPER, Limit, Space
-from .search import NEAR, SATISFIED, Candidate, LocalSearch
+from .problem import EQUAL, LOWER, UPPER, Goal, Limit, Space
+from .search import NEAR, SATISFIED, SETTLED, Candidate, LocalSearch
 
 FOUND, NONE, UNBOUNDED, EDGE, UNSURE, NO_VALUE = map(int, OptimizeStatus)
+NOWHERE = "no design in over= keeps all limits: "
 STILL = 1e-12  # of the objective: a slope over the range that is none
-SETTLED = 1e-4  # residual of the optimality conditions
 
 
 def result_of(
@@ -27,67 +26,50 @@ def result_of(
     """The result of `optimize` for one objective; `grows` where it does without bound towards the edge."""
     design = {name: float(x[0]) for name, x in space.designs(result.z).items() if name in space.names}
     active, multipliers = _named(space, result, search)
-    edge = None in active  # the implied limit, of turning
-    active.pop(None, None)
     gain = multipliers.pop(None, 0.0)
+    edge = active.pop(None, "")  # the implied limit, of turning
+    if edge:
+        active["margin"], multipliers["margin"] = LOWER, gain
     status = FOUND
-    if result.violation > SATISFIED:
-        status = NONE
-    elif not np.isfinite(result.value):
-        status = NO_VALUE
+    if result.violation > SATISFIED or not np.isfinite(result.value):
+        status = NONE if result.violation > SATISFIED else NO_VALUE
     elif edge:
         status = UNBOUNDED if grows else EDGE
     elif result.residual > SETTLED and not result.kink:
         status = UNSURE
     size = isinstance(goal.measure, tuple) and goal.measure[0] == "absmax"
     value = abs(result.value) if size else -goal.sense * result.value
-    if edge:
-        active["margin"], multipliers["margin"] = LOWER, gain
-    if status == UNBOUNDED:
-        value = goal.sense * np.inf
-        multipliers = dict.fromkeys(multipliers, np.nan)
-    if status in (NONE, NO_VALUE):
-        value = np.nan
-    if status in (NONE, NO_VALUE) or result.kink:
-        multipliers = dict.fromkeys(multipliers, np.nan)
+    unknown = {NONE: np.nan, NO_VALUE: np.nan, UNBOUNDED: goal.sense * np.inf}
     return {
         **design,
-        "value": float(value),
+        "value": float(unknown.get(status, value)),
         "active": active,
-        "multipliers": multipliers,
+        "multipliers": dict.fromkeys(multipliers, np.nan)
+        if status in unknown or result.kink
+        else multipliers,
         "status": status,
-        "message": _message(status, goal, space, design, result, search, active),
+        "message": _message(status, goal, design, result, search, active),
         "residual": result.residual,
     }
 
 
 def _named(space: Space, result: Candidate, search: LocalSearch) -> tuple[dict[Any, str], dict[Any, float]]:
     """The active limits and the multipliers, by name."""
-    n, count = len(space.names), len(search.limits)
+    rows = [(limit.key, limit.side, -1.0 if limit.side == EQUAL else 1.0) for limit in search.limits]
+    ends = list(zip(space.names, 1.0 / (space.high - space.low), strict=True))
+    rows += [(name, side, unit) for side in (LOWER, UPPER) for name, unit in ends]
     active: dict[Any, str] = {}
-    multipliers: dict[Any, float] = {limit.key: 0.0 for limit in search.limits} | dict.fromkeys(
-        space.names, 0.0
-    )
-    for limit, multiplier in zip(search.limits, result.multipliers[:count], strict=True):
-        if multiplier or limit.side == EQUAL:
-            active[limit.key] = limit.side
-            multipliers[limit.key] += float(-multiplier if limit.side == EQUAL else multiplier)
-    width = space.high - space.low
-    for side, part in (
-        (LOWER, result.multipliers[count : count + n]),
-        (UPPER, result.multipliers[count + n :]),
-    ):
-        for name, multiplier, wide in zip(space.names, part, width, strict=True):
-            if multiplier:
-                active[name] = side
-                multipliers[name] = float(multiplier / wide)
+    multipliers: dict[Any, float] = {key: 0.0 for key, *_ in rows}
+    for (key, side, unit), multiplier in zip(rows, result.multipliers, strict=True):
+        if multiplier or side == EQUAL:
+            active[key] = side
+            multipliers[key] += float(unit * multiplier)
     return active, multipliers
 
 
 def _message(
     status: int,
     goal: Goal,
-    space: Space,
     design: dict[str, float],
     result: Candidate,
     search: LocalSearch,
@@ -97,7 +79,7 @@ def _message(
     where = _where(design)
     limit = "margin = BC - AB - |ec| = 0"
     if status == NONE:
-        return "no design in over= keeps all limits: " + _missed(result, search) + " at the nearest, " + where
+        return NOWHERE + _missed(result, search) + " at the nearest, " + where
     if status == NO_VALUE:
         return f"{what} has no finite value at any of the {len(search.places)} designs that were looked at"
     if status == UNBOUNDED:
@@ -112,10 +94,9 @@ def _message(
             f", where the optimality conditions hold to {result.residual:.1g} only: more starts= may help"
         )
         return "the search ended at " + where + unsure
-    plain = {key: key in INPUTS or key in space.names for key in active}
-    names = {key: key if plain[key] else text_of(checked(key)) for key in active}
+    names = {key: key if key in design else text_of(checked(key)) for key in active}
     held = ", ".join(f"{names[key]} ({side})" for key, side in active.items())
-    rest = f", held back by {held}" if held else _inside(space, result.z)
+    rest = f", held back by {held}" if held else _inside(search.space, result.z)
     return (
         "optimum at "
         + where
@@ -139,10 +120,10 @@ def _left_out(what: str, search: LocalSearch) -> str:
 
 def _unmoved(goal: Goal, search: LocalSearch) -> str:
     """The variables with which the objective does not change at any design of the scan, as text."""
-    if len(problems(goal)) > 1:  # of which the search has one
+    if len(goal.problems) > 1:  # of which the search has one
         return ""
-    value, slope = search.functions(search.places)
-    value, slope = np.abs(value[:, : search.count, None]), np.abs(slope[:, : search.count])
+    scan = search.functions(search.places)
+    value, slope = np.abs(scan.value[:, : search.count, None]), np.abs(scan.slope[:, : search.count])
     still = np.asarray((slope > STILL * value).sum(axis=(0, 1)) == 0)
     names = [name for name, is_still in zip(search.space.names, still, strict=True) if is_still]
     return f"; {text_of(goal.measure)} does not change with {', '.join(names)}" if names else ""
@@ -167,11 +148,7 @@ def none_turns(space: Space, limits: Sequence[Limit]) -> dict[str, Any] | None:
     """The result where no design within the bounds turns fully, or has the margin to be kept; else None."""
     ends = dict(zip(space.names, zip(space.low.tolist(), space.high.tolist(), strict=True), strict=True))
     design = {name: 0.5 * (low + high) for name, (low, high) in ends.items()}
-    best: dict[str, Callable[[float, float], float]] = {
-        "ec": lambda low, high: min(max(0.0, low), high),
-        "AB": min,
-        "BC": max,
-    }
+    best: dict[str, Any] = {"ec": lambda low, high: min(max(0.0, low), high), "AB": min, "BC": max}
     design |= {name: choose(*ends[name]) for name, choose in best.items() if name in ends}
     ec, AB, BC = (float({**space.fixed, **design}[name]) for name in LENGTHS)
     margin = fsum((BC, -AB, -abs(ec)))
@@ -182,8 +159,7 @@ def none_turns(space: Space, limits: Sequence[Limit]) -> dict[str, Any] | None:
     keys = [*(limit.key for limit in limits), *space.names]
     return {
         **design, "value": np.nan, "active": {}, "multipliers": dict.fromkeys(keys, np.nan), "status": NONE,
-        "message": "no design in over= keeps all limits: " + missed + " at the nearest, " + _where(design),
-        "residual": 0.0,
+        "message": NOWHERE + missed + " at the nearest, " + _where(design), "residual": 0.0,
     }  # fmt: skip
 
 
