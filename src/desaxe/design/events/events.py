@@ -22,7 +22,7 @@ NAMES = (*WHOLE, *SENSITIVITIES, *PLACES)
 
 
 class Numbers(NamedTuple):
-    """How the values of designs are computed with: `FLOATS` of one in plain Python, arrays in NumPy."""
+    """The operations on values of designs: `FLOATS` of one in plain Python, else those of NumPy."""
 
     choose: Callable[[Any, Any, Any], Any]
     root: Callable[..., Any]  # of a function between two ends, and its values there
