@@ -1,6 +1,6 @@
 """`desaxe CALL`: every call that answers a question, with names and inputs as words.
 
-A call of this table is a method of `Machine` of the same name. To add one, add its line.
+A call of `calls.txt` is a method of `Machine` of the same name. To add one, add its line there.
 """
 
 import argparse
@@ -15,53 +15,15 @@ from typing import Any
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LOADS
 from ..support.shown import with_unit
+from ..support.template import file_text
 from .answers import require_target, written
 from .parser import FLAG, JSON, OVERWRITE, SIGNS, Command, Facts, Option
 from .words import UsageError, arguments_of, name_of
 
 # Call -> what it answers, in a line of `desaxe --help`, and the words of an example.
 CALLS = {
-    "point": (
-        "values at one crank angle of one design",
-        "a_C theta=60deg ec=10mm AB=125mm BC=350mm omega0=157",
-    ),
-    "evaluate": ("values at points", "a_C,V_C theta=0deg:90deg:4 ec=10mm AB=125mm BC=350mm omega0=1500rpm"),
-    "grid": ("values over a grid", "a_C theta=0deg:360deg:73 ec=0mm,10mm AB=125mm BC=350mm omega0=157"),
-    "peak": ("extreme value over a turn", "a_C ec=10mm AB=125mm BC=350mm omega0=1500rpm"),
-    "events": ("stroke, dead centres, time ratio, pressure angles", "ec=10mm AB=125mm BC=350mm"),
-    "feasibility": ("margin, limit angles, kind of motion", "ec=10mm AB=125mm BC=350mm"),
-    "crossings": (
-        "angles at which a quantity passes through a value",
-        "V_C value=0.05 ec=10mm AB=125mm BC=350mm omega0=157",
-    ),
-    "solve": ("an input for a value of the design", "over.AB=10mm:60mm stroke=50mm ec=5mm BC=150mm"),
-    "inverse": ("crank angle for a position of the slider", "Y=400mm ec=10mm AB=125mm BC=350mm"),
-    "drive": ("torque, power, flywheel over a cycle", "ec=0 AB=125mm BC=350mm omega0=1500rpm m_slider=1kg"),
-    "harmonics": ("Fourier series over a cycle", "a_C orders=4 ec=0 AB=125mm BC=350mm omega0=157"),
-    "counterweight": ("balance of the shaking force", "ec=0 AB=125mm BC=350mm omega0=157 m_slider=1kg"),
-    "tolerance": (
-        "scatter of a quantity by its inputs' tolerances",
-        'a_C theta=60deg "ec=10 mm +- 0.1 mm" AB=125mm BC=350mm omega0=157',
-    ),
-    "enclose": (
-        "guaranteed range of a quantity",
-        "V_C theta=60deg ec=9.9mm:10.1mm AB=125mm BC=350mm omega0=157",
-    ),
-    "optimize": (
-        "best design within ranges",
-        "minimize=absmax:a_C over.BC=300mm:400mm keep.stroke=250mm:260mm ec=10mm AB=125mm omega0=157",
-    ),
-    "synthesize": ("designs of a stroke and a time ratio", "stroke=100mm time_ratio=1.1 BC=200mm"),
-    "design_map": ("quantities over designs", "stroke ec=0mm:20mm:3 AB=100mm,120mm BC=350mm"),
-    "simulate": ("motion under a torque", "torque=20 t_end=1s ec=0 AB=125mm BC=350mm I_crank=0.1"),
-    "steady": (
-        "steady motion on a motor: that of a scene's [steady], or a torque",
-        "--machine examples/motor.toml flywheel_inertia=3",
-    ),
-    "fit": (
-        "parameters of a machine from measurements in a CSV file",
-        "examples/measured.csv over=AB,BC sigma.Y=0.05mm --machine examples/motor.toml",
-    ),
+    name: (about, example)
+    for name, about, example in (row.split(" | ") for row in file_text(__package__, "calls.txt").splitlines())
 }
 SAME = {"point": "evaluate"}
 MISSING = re.compile(r"(\w+)\(\) missing \d+ required (?:keyword-only|positional) arguments?: (.*)")

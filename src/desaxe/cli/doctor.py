@@ -39,30 +39,29 @@ def _doctor(options: argparse.Namespace) -> int:
 
 
 ABOUT = "versions, threads, and whether arrays and points agree on this computer"
-DOCTOR = Command(
-    "doctor", ABOUT, _doctor, [Option("--accuracy", "compare with 200 frozen truths", FLAG)]
-)  # fmt: skip
+DOCTOR = Command("doctor", ABOUT, _doctor, [Option("--accuracy", "compare with 200 frozen truths", FLAG)])
 
 
 def examine(accuracy: bool = False) -> Examination:
     """Examine the installation, its values beside frozen truths too; problems are reported, never raised."""
     computed, usable = _computation(accuracy)
     usable = usable and all(_version(name) != MISSING for name in RUNTIME)
-    python = f"{platform.python_implementation()}, {sys.platform}, {platform.machine()}"
+    system = f"{platform.python_implementation()}, {sys.platform}, {platform.machine()}"
+    python = f"{platform.python_version()} ({system})"
     parts: dict[str, dict[str, str]] = {
         "desaxe": {"version": _version("desaxe"), "place": str(Path(__file__).parents[1])},
-        "runtime": {"python": f"{platform.python_version()} ({python})"}
-        | {name: _version(name) for name in RUNTIME},
+        "runtime": {
+            "python": f"{python}, {platform.machine()})",
+            **{name: _version(name) for name in RUNTIME},
+        },
         "optional": {name: _optional(name, extra) for name, extra in EXTRAS.items() if name not in MODULES},
         "committed kernels": {"freshness": _committed()},
         "processor": _processor(),
         "computation": computed,
     }
-    lines = [
-        line
-        for title, rows in parts.items()
-        for line in (title, *(f"  {name:13}{what}" for name, what in rows.items()))
-    ]
+    lines = []
+    for title, rows in parts.items():
+        lines += [title, *(f"  {name:13}{what}" for name, what in rows.items())]
     verdict = "desaxe can be used." if usable else "desaxe cannot be used here; see above."
     return Examination("\n".join([*lines, verdict]), usable)
 
@@ -166,11 +165,10 @@ def worst_shares() -> dict[str, float]:
     """The largest error of single points and of arrays, as shares of the promise."""
     import numpy as np
 
-    rows, of_arrays = truths(), []
-    of_points = [row.share(evaluate(row.name, branch=row.branch, **row.point)) for row in rows]
-    for key in dict.fromkeys((row.name, row.branch) for row in rows):
-        some = [row for row in rows if (row.name, row.branch) == key] * COPIES
-        columns: dict[str, Any] = {name: np.array([row.point[name] for row in some]) for name in INPUTS}
-        values = evaluate(key[0], branch=key[1], **columns).tolist()
-        of_arrays += [row.share(value) for row, value in zip(some, values, strict=True)]
-    return {"points": max(of_points), "arrays": max(of_arrays)}
+    worst = {"points": 0.0, "arrays": 0.0}
+    for row in truths():
+        columns: dict[str, Any] = {name: np.full(COPIES, value) for name, value in row.point.items()}
+        for what, point in (("points", row.point), ("arrays", columns)):
+            value = np.ravel(evaluate(row.name, branch=row.branch, **point))[0]
+            worst[what] = max(worst[what], row.share(float(value)))
+    return worst

@@ -28,17 +28,17 @@ def options_first(words: Sequence[str]) -> list[str]:
     tables: dict[str, list[str]] = {}
     values: list[str] = others  # where the next word belongs
     for before, word in pairwise(["", *words]):
-        if word in PLAIN or word in VALUED or before in VALUED:
+        key = word.removeprefix("--")
+        if key != word and key in TABLES:
+            values = tables.setdefault(key, [])
+        elif word in PLAIN or word in VALUED or before in VALUED:
             options.append(word)
             values = others
         elif word in FLAGS:
-            others.append(f"{word[2:]}=true")
+            others.append(f"{key}=true")
             values = others
-        elif word.startswith("--"):
-            if word[2:] in TABLES:
-                values = tables.setdefault(word[2:], [])
-            else:
-                options.append(word)
+        elif key != word:
+            options.append(word)
         elif word.endswith(".toml") and values is others and "--machine" not in words:
             options += ["--machine", word]
         else:
@@ -96,19 +96,13 @@ def _value(word: str, text: str) -> Any:
         raise UsageError(f"{word}: an open side is none: {word.partition('=')[0]}={ends}")
     if len(parts) == 3:
         return _range(word, *parts)
-    tolerance = _toleranced(text)
-    if tolerance is not None:
-        return tolerance
-    return tuple(map(_single, parts)) if len(parts) == 2 else _single(text)
-
-
-def _toleranced(text: str) -> Any:
-    """A value with its tolerance, of `10 mm +- 0.1 mm`; None for any other text."""
     from ..mechanism.ranges import plus_minus
     from ..units.text import PLUS_MINUS
 
-    parts = [part.strip() for part in PLUS_MINUS.split(text)]
-    return plus_minus(*map(_single, parts)) if len(parts) == 2 else None
+    value, *tolerance = (_single(part.strip()) for part in PLUS_MINUS.split(text))
+    if len(tolerance) == 1:
+        return plus_minus(value, *tolerance)
+    return tuple(map(_single, parts)) if len(parts) == 2 else _single(text)
 
 
 def _single(text: str) -> Any:

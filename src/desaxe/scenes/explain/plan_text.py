@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from ...support.memory import size_text
 from ...support.shown import printed, with_unit
 from ..document.blocks import Block, Section, Text, TextTable, cell
 
@@ -13,8 +14,8 @@ def plan_sections(plan: Mapping[str, Any]) -> Iterator[Section]:
     """The whole plan."""
     yield Section("Asked for", _asked(plan))
     if plan["loops"] is not None:
-        skipped = [Text(_skipped(one)) for one in plan["skipped"]]
-        yield from [Section("Skipped", skipped)] if skipped else []
+        if plan["skipped"]:
+            yield Section("Skipped", [Text(_skipped(one)) for one in plan["skipped"]])
         yield Section("Operations at each point after each pass", [_passes(plan)])
         yield Section("Loops, from outside in", [_loops(plan)])
         yield Section("Execution", [Text(line) for line in _how(plan)])
@@ -30,28 +31,22 @@ def _asked(plan: Mapping[str, Any]) -> list[Block]:
     blocks: list[Block] = []
     if plan["outputs"]:
         rows = [(out["name"], printed(out["unit"]), out["meaning"]) for out in plan["outputs"]]
-        blocks.append(TextTable(("", "", ""), rows, is_cut=True))
-        taken = plan["reduction"]
-        of_each = (
-            taken and f"of each over {taken['axis']}: {', '.join(taken['kinds'])}; the grid is not stored"
-        )
-        blocks.append(Text(of_each or "and at every point its status; the margin once per design"))
-    inputs = plan["inputs"]
-    facts = {
-        "accuracy": [f"{plan['accuracy']}: {plan['promise']}"],
-        "motion": [plan["motion"]],
-        "axes": [
-            f"{one['name']} ({one['values']}: {cell(one['from'])} to {cell(one['to'])} {one['unit']})"
-            for one in inputs
-            if "values" in one
-        ],
-        "loads": [f"{one['name']}: {one['load']}" for one in inputs if "load" in one],
-        "fixed": [
-            with_unit(f"{one['name']} = {cell(one['value'])}", one["unit"])
-            for one in inputs
-            if "value" in one
-        ],
-    }
+        each, taken = "and at every point its status; the margin once per design", plan["reduction"]
+        if taken:
+            each = f"of each over {taken['axis']}: {', '.join(taken['kinds'])}; the grid is not stored"
+        blocks += [TextTable(("", "", ""), rows, is_cut=True), Text(each)]
+    facts: dict[str, list[str]] = {
+        "accuracy": [f"{plan['accuracy']}: {plan['promise']}"], "motion": [plan["motion"]],
+        "axes": [], "loads": [], "fixed": [],
+    }  # fmt: skip
+    for one in plan["inputs"]:
+        name, unit = one["name"], one["unit"]
+        if "values" in one:
+            facts["axes"].append(f"{name} ({one['values']}: {cell(one['from'])} to {cell(one['to'])} {unit})")
+        elif "load" in one:
+            facts["loads"].append(f"{name}: {one['load']}")
+        else:
+            facts["fixed"].append(with_unit(f"{name} = {cell(one['value'])}", unit))
     return [*blocks, *(Text(f"{name:8} {', '.join(parts)}") for name, parts in facts.items() if parts)]
 
 
@@ -68,29 +63,28 @@ def _passes(plan: Mapping[str, Any]) -> TextTable:
     before, left = steps[-1]["operations"], plan["operations"]["per_point"]
     if plan["run"]["way"] == "compiled" and left < 0.995 * before:
         what = "operations that do not depend on an axis leave its loop"
-        rows.append(("hoist", _few(left), _few(before - left), what))
+        few, saved = (f"{n:.1f}" if n < 100 else f"{n:.0f}" for n in (left, before - left))
+        rows.append(("hoist", few, saved, what))
     return TextTable(("pass", "operations", "saved", ""), rows, is_cut=True)
 
 
-def _few(value: float) -> str:
-    return f"{value:.1f}" if value < 100 else f"{value:.0f}"
-
-
 def _loops(plan: Mapping[str, Any]) -> TextTable:
-    """Runs, operations, operations per point of each loop."""
+    """Runs, operations, operations per point of each loop; its expensive operations and named values."""
     rows = []
     for loop in plan["loops"]:
-        depth = len([axis for axis in loop["along"] if axis])
-        if loop["table"]:
-            name = f"table over {' x '.join(loop['along'])}" if loop["along"] else "for the tables, once"
-        else:
-            name = "  " * max(0, depth - 1) + (f"for each {loop['along'][-1]}" if depth else "once")
+        depth, operations = len(loop["along"]), str(loop["operations"])
         if loop["close"]:
             form = "instead, the stable form, where margins are narrow"
-            rows.append(("  " * depth + "or, if close", "", str(loop["operations"]), "", form))
+            rows.append(("  " * depth + "or, if close", "", operations, "", form))
             continue
-        share = _share(loop["per_point"])
-        rows.append((name, f"{loop['runs']:,}", str(loop["operations"]), share, _values(loop)))
+        if loop["table"]:
+            name = f"table over {' x '.join(loop['along'])}" if depth else "for the tables, once"
+        else:
+            name = "  " * max(0, depth - 1) + (f"for each {loop['along'][-1]}" if depth else "once")
+        dear = ", ".join(f"{count} {op}" for op, count in loop["kinds"].items() if op in DEAR)
+        values = ", ".join(value for value in loop["values"] if not value[1:].isdigit())
+        about = "; ".join(filter(None, (dear, values)))
+        rows.append((name, f"{loop['runs']:,}", operations, _share(loop["per_point"]), about))
     counts = plan["operations"]
     rows.append(("in all", "", str(counts["straight"]), _share(counts["per_point"]), ""))
     return TextTable(("", "runs", "operations", "per point", ""), rows, is_cut=True)
@@ -98,13 +92,6 @@ def _loops(plan: Mapping[str, Any]) -> TextTable:
 
 def _share(value: float) -> str:
     return f"{value:.3g}" if value >= 0.01 else "<0.01"
-
-
-def _values(loop: Mapping[str, Any]) -> str:
-    """The expensive operations of a loop, and its named values."""
-    dear = ", ".join(f"{count} {op}" for op, count in loop["kinds"].items() if op in DEAR)
-    named = ", ".join(name for name in loop["values"] if not name[1:].isdigit())
-    return "; ".join(filter(None, (dear, named)))
 
 
 def _how(plan: Mapping[str, Any]) -> Iterator[str]:
@@ -125,8 +112,8 @@ def _how(plan: Mapping[str, Any]) -> Iterator[str]:
     for load in plan["loads"]:
         times = f"{load['lookups']:,} time{'s' if load['lookups'] > 1 else ''}"
         yield f"load     {load['name']} is looked up {times}, {load['where']}"
-    grid = f"; the grid would take {_bytes(memory['grid'])}" if memory["grid"] != memory["result"] else ""
-    yield f"memory   {_bytes(memory['result'])} of results, {_bytes(memory['inputs'])} of inputs{grid}"
+    grid = f"; the grid would take {size_text(memory['grid'])}" if memory["grid"] != memory["result"] else ""
+    yield f"memory   {size_text(memory['result'])} of results, {size_text(memory['inputs'])} of inputs{grid}"
     yield f"results  {plan['results'] or 'returned, not written to a file'}"
 
 
@@ -134,12 +121,5 @@ def _sweep(one: Mapping[str, Any]) -> Iterator[str]:
     """The store that the results are swept into."""
     shape = " x ".join(f"{length} {name}" for name, length in one["chunk"].items()) or "one point"
     yield f"chunks   {one['chunks']:,} of {shape}, written to {one['store']}"
-    yield f"memory   {_bytes(one['memory'])} for the chunks in flight"
-    yield f"disk     at most {_bytes(one['disk'])}; {_bytes(one['free'])} are free"
-
-
-def _bytes(count: int) -> str:
-    for unit, size in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
-        if count >= size:
-            return f"{count / size:.3g} {unit}"
-    return f"{count} bytes"
+    yield f"memory   {size_text(one['memory'])} for the chunks in flight"
+    yield f"disk     at most {size_text(one['disk'])}; {size_text(one['free'])} are free"
