@@ -194,14 +194,14 @@ def test_it_shows_itself():
         assert words in text, words
     assert max(map(len, text.splitlines())) <= 100
     page = PRESS._repr_html_()
-    for words in ("<svg", "0.05 m", "friction of the guide", "stroke"):
+    for words in ("<img", "0.05 m", "friction of the guide", "stroke"):
         assert words in page
     stuck = dx.Machine(ec=0.1, AB=0.2, BC=0.25)
     assert "no (rocker)" in repr(stuck)
     assert "stroke" not in repr(stuck)
     impossible = dx.Machine(ec=1.0, AB=0.2, BC=0.25)
     assert "cannot be assembled" in repr(impossible)
-    assert "svg" not in impossible._repr_html_()
+    assert "<img" not in impossible._repr_html_()
     assert repr(dx.Machine(m_slider=2.0)).endswith("mass of the slider")
 
 

@@ -50,10 +50,7 @@ def examine(accuracy: bool = False) -> Examination:
     python = f"{platform.python_version()} ({system})"
     parts: dict[str, dict[str, str]] = {
         "desaxe": {"version": _version("desaxe"), "place": str(Path(__file__).parents[1])},
-        "runtime": {
-            "python": f"{python}, {platform.machine()})",
-            **{name: _version(name) for name in RUNTIME},
-        },
+        "runtime": {"python": python, **{name: _version(name) for name in RUNTIME}},
         "optional": {name: _optional(name, extra) for name, extra in EXTRAS.items() if name not in MODULES},
         "committed kernels": {"freshness": _committed()},
         "processor": _processor(),

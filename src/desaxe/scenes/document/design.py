@@ -30,6 +30,7 @@ from ..reading.values import Value
 from .blocks import (
     NONE,
     Block,
+    Image,
     Section,
     Text,
     TextTable,
@@ -139,34 +140,37 @@ def mechanism(content: Content, units: UnitSystem) -> Section | None:
     """The first design to scale, and the geometry of each; None without the lengths."""
     if any(name not in content.inputs for name in LENGTHS):
         return None
+    designs = designs_of(content, units)
+    lengths = [{name: one.inputs[name] for name in LENGTHS} for one in designs]
+    image = drawn_to_scale(lengths[0], content.branch, units, designs[0].words)
+    figures = [_geometry(one, content.branch, units) for one in lengths]
+    return Section("Mechanism", [image, _side_by_side([one.words for one in designs], figures)])
+
+
+def drawn_to_scale(lengths: Mapping[str, Any], branch: int, units: UnitSystem, words: str = "") -> Image:
+    """A design to scale at an angle at which it can be assembled, if there is one."""
     with IMPORTS:
         from ...plot.mechanism import sketched
 
-    designs = designs_of(content, units)
-    lengths = {name: designs[0].inputs[name] for name in LENGTHS}
-    angle = feasible_angle(lengths, content.branch)
-    picture = sketched(angle, lengths, content.branch, units)
-    words = f"The mechanism to scale at theta = {with_unit(units, 'theta', angle)}"
-    words += f", {designs[0].words}" if designs[0].words else ""
-    columns = [_geometry({n: one.inputs[n] for n in LENGTHS}, content.branch, units) for one in designs]
-    table = _side_by_side([one.words for one in designs], columns)
-    return Section("Mechanism", [image_of(picture.figure, words), table])
+    intervals, angle = feasibility(**lengths)["theta_intervals"], ANGLE
+    if evaluate("status", theta=ANGLE, branch=branch, **lengths) != 0 and intervals:
+        angle = 0.5 * float(sum(intervals[0]))
+    about = f"The mechanism to scale at theta = {with_unit(units, 'theta', angle)}"
+    picture = sketched(angle, lengths, branch, units)
+    return image_of(picture.figure, f"{about}, {words}" if words else about)
 
 
-def feasible_angle(lengths: Mapping[str, Any], branch: int) -> float:
-    """An angle at which the mechanism can be assembled, if there is one."""
-    intervals = feasibility(**lengths)["theta_intervals"]
-    if evaluate("status", theta=ANGLE, branch=branch, **lengths) == 0 or not intervals:
-        return ANGLE
-    return 0.5 * float(sum(intervals[0]))
+def turns_fully(lengths: Mapping[str, Any]) -> str:
+    """A word for whether the crank turns fully, with the kind of the mechanism where it does not."""
+    result = feasibility(**lengths)
+    kind = "no, it cannot be assembled" if result["kind"] == "none" else f"no ({result['kind']})"
+    return "yes" if result["can_turn"] else kind
 
 
 def _geometry(lengths: dict[str, Any], branch: int, units: UnitSystem) -> dict[str, str]:
-    result = feasibility(**lengths)
-    kind = "no, it cannot be assembled" if result["kind"] == "none" else f"no ({result['kind']})"
     rows = {
-        "turns fully": "yes" if result["can_turn"] else kind,
-        "margin BC - AB - |ec|": with_unit(units, "margin", result["margin"]),
+        "turns fully": turns_fully(lengths),
+        "margin BC - AB - |ec|": with_unit(units, "margin", feasibility(**lengths)["margin"]),
     }
     turn = events(branch=branch, **lengths)
     for name, words in OF_TURN.items():

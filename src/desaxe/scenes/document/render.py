@@ -58,25 +58,26 @@ def html(document: Document) -> str:
     """The text of a page for the screen and for paper, with a checksum by which desaxe knows its own."""
     sections: list[str] = []
     for section in document.sections:
-        blocks = map(_element, section.blocks)
+        blocks = map(element, section.blocks)
         sections += [f"<section>\n<h2>{escape(section.title)}</h2>", *blocks, "</section>"]
     page = file_text(__package__, "page.html")
     return sealed(filled(page, CHECKSUM=UNSEALED, TITLE=escape(document.title), SECTIONS=sections))
 
 
-def _address(image: Image) -> str:
+def address(image: Image) -> str:
     """A picture as an address that holds it."""
     return f"data:image/{image.kind};base64,{b64encode(image.data).decode()}"
 
 
-def _element(block: Block) -> str:
+def element(block: Block) -> str:
+    """A block as HTML."""
     if isinstance(block, Text):
         return f"<p>{escape(block.words)}</p>"
     if isinstance(block, Lines):
         return f"<pre>{escape(block.text)}</pre>"
     if isinstance(block, Image):
         words = escape(block.words)
-        image = f'<img src="{_address(block)}" alt="{words}">'
+        image = f'<img src="{address(block)}" alt="{words}">'
         return f"<figure>\n{image}\n<figcaption>{words}</figcaption>\n</figure>"
     head = "".join(f"<th>{escape(head)}</th>" for head in block.columns)
     rows = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in block.rows]
@@ -93,7 +94,7 @@ def markdown(document: Document) -> str:
     parts = [f"# {_plain(document.title)}"]
     for section in document.sections:
         parts += [f"## {_plain(section.title)}", *(_paragraph(block, images) for block in section.blocks)]
-    parts += [f"[picture-{k}]: {_address(image)}" for k, image in enumerate(images, 1)]
+    parts += [f"[picture-{k}]: {address(image)}" for k, image in enumerate(images, 1)]
     return sealed("\n\n".join([*parts, f"<!-- desaxe report, {UNSEALED} -->"]) + "\n")
 
 
