@@ -239,6 +239,12 @@ def calls() -> dict[str, Call]:
             for to in (*(language.name for language in languages()), "fmu")
         },
         "explore": Call(written(dx.explore), (SCENE,), {}, ("branch", "title", "units", "names")),
+        "explore under a load": Call(
+            written(dx.explore),
+            (None,),
+            {"F_Y": dx.spring(4e3, 0.05) - dx.damper(30.0), **MACHINE},
+            ("names", "g_Y"),
+        ),
         "to_excel": Call(written(dx.to_excel), (SAMPLES,), {}, ("units",)),
         "quantities": Call(dx.quantities, (), {}),
         "undefine": Call(dx.undefine, (), {"name": "of_no_fuzz"}),

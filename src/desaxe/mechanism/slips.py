@@ -87,13 +87,14 @@ def _typed(written: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
 
 
 def _numbers(value: Any) -> list[float]:
-    """The plain numbers that a value has; of one with a tolerance the value."""
+    """The plain numbers that a value has, of those that are doubles; of one with a tolerance the value."""
     if isinstance(value, (list, tuple)):
         parts = value[:1] if isinstance(value, PlusMinus) else [*value[:MOST_LOOKED_AT], *value[-1:]]
     else:
         parts = (value,)
     plain = (plain_number(part) if isinstance(part, str) else part for part in parts)
-    return [part for part in plain if isinstance(part, (int, float)) and type(part) in (int, float)]
+    numbers = (part for part in plain if isinstance(part, (int, float)) and type(part) in (int, float))
+    return [number for number in numbers if abs(number) <= sys.float_info.max]
 
 
 def _offset(written: Any, units: UnitSystem, inputs: Mapping[str, Any]) -> Iterator[Slip]:
@@ -102,7 +103,7 @@ def _offset(written: Any, units: UnitSystem, inputs: Mapping[str, Any]) -> Itera
     if not isinstance(AB, float) or isinstance(written, (list, tuple)):
         return
     for ec in _numbers(written):
-        si = abs(conversion.to_si(float(ec))) if abs(ec) <= sys.float_info.max else 0.0
+        si = abs(conversion.to_si(float(ec)))
         if conversion.si != 1 and 0.0 < si < SMALL_OFFSET * AB < abs(ec):
             yield Slip("small ec", f'ec = {ec:.6g} {conversion.unit}, write ec = "{ec:.6g} m"')
         far = isinstance(BC, float) and LARGE_OFFSET * (AB + BC) < si <= FARTHEST
@@ -117,7 +118,8 @@ def _forces(inputs: Mapping[str, Any], units: UnitSystem) -> Iterator[Slip]:
     length = max(_numbers(rods.tolist() if hasattr(rods, "tolist") else rods), default=0.0)
     for name in FORCES if SHORTEST < length <= FARTHEST else ():
         value = inputs.get(name)
-        size = abs(value) if isinstance(value, (int, float)) else getattr(value, "largest", 0.0)
+        numbers = _numbers(value) if isinstance(value, (int, float)) else []
+        size = max(map(abs, numbers), default=getattr(value, "largest", 0.0))
         stress = 4.0 * size / length**2
         if stress > STRONGEST and _is_typed(size):
             force, along = units.of(name), units.of("BC")

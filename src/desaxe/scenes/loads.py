@@ -1,8 +1,8 @@
 """Loads and motors of a scene: from a file, from points, or of a few numbers."""
 
 from collections.abc import Mapping, Sequence
-from math import isfinite
 from pathlib import Path
+from sys import float_info
 from typing import Any, NamedTuple, cast
 
 from ..loads.along_motion import OverSpeed
@@ -113,8 +113,8 @@ def force_of(key: str, name: str, written: Any, folder: Path | None, units: Unit
             f"{key}.{kind} = {shown(written[kind])}: its plain numbers would be in SI units, but those of "
             f"the scene are not: name the units of its columns in its heading, or by {beside} beside the file"
         )
-    if not isfinite(scale):
-        raise SceneError(f"{key}.scale = {scale}: expected a finite number")
+    if not abs(scale) <= float_info.max:
+        raise SceneError(f"{key}.scale = {shown(scale)}: expected a finite number")
     return cast(Value, _settled(key, name, load if scale == 1.0 else load * scale, units))
 
 

@@ -17,6 +17,21 @@ def test_points_have_the_answers_of_arrays(tmp_path):
         assert answers == {name: together[name][index] for name in NAMES}
 
 
+def test_groups_have_the_answers_of_all_together(tmp_path):
+    """Results that a function of their group computes, from the arguments that these take."""
+    made = module(coverage())
+    halves = made.outputs[::2], made.outputs[1::2]
+    groups = [[symbol.name for symbol in half] for half in halves]
+    outputs = tuple(symbol.name for half in halves for symbol in half)
+    program = made.forms.stable._replace(outputs=(*outputs, "zero_status"))
+    forms = made.forms._replace(stable=program)
+    grouped = made._replace(name="grouped", outputs=(*halves[0], *halves[1]), groups=groups, forms=forms)
+    asked = [["evaluate", given] for given in POINTS]
+    asked += [[name, *(POINTS[0][n] for n in coverage().inputs)] for name in NAMES]
+    answers = (es_module(written(JavaScript(), one, tmp_path), asked) for one in (grouped, made))
+    assert next(answers) == next(answers)
+
+
 GIVEN = ['"1"', "true", "null", "[1]", "{}", "new String('1')", "1n", "Symbol('x')"]
 REFUSED = """
 import {{ evaluate, twice }} from "./made.mjs";

@@ -1,6 +1,10 @@
 """A JavaScript module (ES2015) and its types: `import { evaluate, a_C } from "./name.js"`."""
 
+from collections.abc import Iterator, Sequence
+
 from ...support.template import file_text, filled
+from ..passes.slicing import keep_outputs
+from ..program import Program
 from .javascript import HEADER, SPELLING, TABLES, emit_javascript
 from .protocol import Language, Module, Symbol
 from .shared import arrays_of, comment, numbers, one_line
@@ -42,20 +46,40 @@ def _source(module: Module) -> str:
             f"export const OUTPUTS = {_list(module.outputs)};",
             f"export const UNITS = {{ {', '.join(units)} }};",
             "",
-            emit_javascript(program, "values"),
-            *(_function(module, symbol, place) for place, symbol in enumerate(module.outputs)),
+            *_values(module, program),
             EVALUATE,
         ]
     )
 
 
-def _function(module: Module, symbol: Symbol, place: int) -> str:
-    """The function of one output; an argument that it does not take is NaN."""
+def _values(module: Module, program: Program) -> Iterator[str]:
+    """The functions of all outputs, of those of each group, and of each output."""
+    if not module.groups:
+        yield emit_javascript(program, "values")
+        for index, symbol in enumerate(module.outputs):
+            yield _function(module, symbol, "values", program.inputs, index)
+        return
+    symbols, calls = {symbol.name: symbol for symbol in module.outputs}, []
+    outputs = dict(zip(symbols, program.outputs, strict=True))
+    for k, names in enumerate(module.groups):
+        part = keep_outputs(program, [outputs[name] for name in names])
+        yield emit_javascript(part, f"values_{k}")
+        for index, name in enumerate(names):
+            yield _function(module, symbols[name], f"values_{k}", part.inputs, index)
+        calls.append(f"...values_{k}({_safe(part.inputs)})")
+    yield f"const values = ({_safe(program.inputs)}) => [{', '.join(calls)}];\n"
+
+
+def _safe(names: Sequence[str]) -> str:
+    return ", ".join(map(SPELLING.safe, names))
+
+
+def _function(module: Module, symbol: Symbol, function: str, inputs: Sequence[str], index: int) -> str:
+    """The function of one output by that of several; an argument that it does not take is NaN."""
     taken = module.taken(symbol.name)
-    names = [one.name for one in module.inputs]
-    checked = [f'number("{n}", {SPELLING.safe(n)})' if n in taken else "NaN" for n in names]
+    checked = [f'number("{n}", {SPELLING.safe(n)})' if n in taken else "NaN" for n in inputs]
     head = f"{_about(symbol)}\nexport function {_signature(module, symbol, '')} {{"
-    return f"{head}\n  return values({', '.join(checked)})[{place}];\n}}\n"
+    return f"{head}\n  return {function}({', '.join(checked)})[{index}];\n}}\n"
 
 
 def _types(module: Module) -> str:

@@ -65,6 +65,7 @@ class Module(NamedTuple):
                  arguments, and the sign of the speed, which only friction takes
     constants    of the written-out sine and cosine; beyond their limit they are wrong
     tables       name -> knots and coefficients of a table that Programs look into
+    groups       results in their order, those together that one function of JavaScript computes; else all are
 
     Of Python that people import (numba):
 
@@ -90,6 +91,7 @@ class Module(NamedTuple):
     arguments: Mapping[str, Sequence[str]] = {}
     motion: Solver | None = None
     tables: Mapping[str, Content] = {}
+    groups: Sequence[Sequence[str]] = ()
     what: str = "the results"
     angle: str = ""
     fixed: Mapping[str, float] = {}

@@ -1,30 +1,31 @@
-"""The content of an explorer page: inputs, designs, quantities, and a function for each quantity.
+"""The content of an explorer page: inputs, designs, quantities, and the module that computes them.
 
-A quantity and its first sensitivities are one Program, cut to them: the page computes what it draws.
+A quantity and its first sensitivities are one function of the module: the page computes what it draws.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from ...compiler.languages.javascript import emit_javascript
+from ...compiler.languages.protocol import Forms, Module, Symbol
+from ...compiler.passes.slicing import keep_outputs
 from ...compiler.program import Line, Program, renamed
 from ...loads.angles import cycle
-from ...loads.lines import lines_of, tables_of, totals_of
+from ...loads.lines import tables_of
 from ...loads.load import Load
-from ...loads.resolve import plan_of, split
+from ...loads.resolve import split
 from ...mechanism.catalogue import Quantity, law_name, quantities, quantity
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.closed.limits import ANGLES, LIMITS
+from ...mechanism.constants import constants
 from ...mechanism.inputs import INPUTS
-from ...mechanism.load_lines import TurningSense, with_totals
-from ...mechanism.names import CENTRES, LENGTHS, LOADS, PARAMETERS, joined, parts
+from ...mechanism.names import CENTRES, LOADS, ORDER, PARAMETERS, joined, parts
 from ...mechanism.own import Definition, used_by, using
 from ...mechanism.program import program_of
 from ...mechanism.quantity_units import SI, UnitSystem
-from ...runtime.request import request
-from ...runtime.specialise import specialise
+from ..content import Content
+from ..export.portable import ANY, asked_of
 
 Value = float | tuple[float, ...]
 
@@ -39,18 +40,14 @@ VALUES = (  # without their sensitivities, which would make the page twice as la
 )  # fmt: skip
 CHANGED = tuple(name for name in LOADS if name not in CENTRES)  # on the page; 0 where not given
 STATE = ("status", "margin")
+TURN = ("stroke", "time_ratio", "theta_outer", "theta_inner", "max_pressure_angle")
+CLOSED = {  # of the lengths: closed forms, and the names of their values in the module
+    "limits": [f"limits_{name}" for name in ANGLES],
+    "turn": [f"turn_{name}" for name in TURN],
+}
 MOST_DESIGNS = 5  # that a page compares when it is opened: a colour is left for one that is kept
 FROM_MANY = 4  # of more values than that, evenly chosen
 LISTED = 6  # values that are left out; of more only their number is shown
-
-
-class PageFunction(NamedTuple):
-    """One function of the page: the values that it returns, the inputs that it takes, its source."""
-
-    quantity: str
-    names: tuple[str, ...]
-    inputs: tuple[str, ...]
-    source: str
 
 
 class PageContent(NamedTuple):
@@ -61,7 +58,8 @@ class PageContent(NamedTuple):
     theta: tuple[float, float]
     designs: tuple[dict[str, float], ...]
     shown: tuple[str, ...]
-    functions: tuple[PageFunction, ...]
+    groups: dict[str, list[str]]  # quantity -> it and the sensitivities that the page knows
+    module: Module
     left_out: Mapping[str, tuple[float, ...]]  # input -> its values that no design has
     given: tuple[str, ...]  # the inputs that were given
     loads: Mapping[str, Load] = MappingProxyType({})
@@ -74,7 +72,7 @@ class PageContent(NamedTuple):
         """The records of all quantities of the page."""
         state = "omega" in self.designs[0]
         with using(self.definitions):
-            return [quantity(name, state) for function in self.functions for name in function.names]
+            return [quantity(name, state) for names in self.groups.values() for name in names]
 
 
 def content(
@@ -97,11 +95,15 @@ def content(
     if is_loaded(given):
         groups |= {} if names is not None else {name: [name] for name in VALUES if name not in groups}
         given = {**given, **{name: 0.0 for name in CHANGED if name not in given}}
-    functions = tuple(_function(base, own, given, branch, loads) for base, own in groups.items())
+    free: Any = dict.fromkeys((*given, "theta"), ANY) | loads
+    every = tuple(name for names in groups.values() for name in names)
+    scene = Content(title=title, inputs=free, outputs=every, branch=branch, accuracy="standard")
+    module = _module(scene, groups.values())
     designs = _designs(given)
     left = {n: out for n, value in given.items() if n != "theta" and (out := _left_out(n, value, designs))}
     theta, own = _angles(given, cycle(loads)), used_by(groups)
-    return PageContent(title, branch, theta, designs, shown, functions, left, named, loads, definitions=own)
+    content = PageContent(title, branch, theta, designs, shown, groups, module, left, named, loads)
+    return content._replace(definitions=own)
 
 
 def _tables(inputs: Mapping[str, Any]) -> dict[str, Load]:
@@ -169,20 +171,28 @@ def _sensitivities(base: str, given: Mapping[str, Value]) -> list[str]:
     ]
 
 
-def _function(
-    base: str, names: Iterable[str], given: Mapping[str, Value], branch: int, loads: Mapping[str, Load]
-) -> PageFunction:
-    plan = plan_of(tuple(names), loads, "omega" in given, "mu" in given)
-    every = tuple(dict.fromkeys((*plan.names, *plan.motion)))
-    free = dict.fromkeys(given, 1.0) | {"theta": 1.0}  # every given input stays variable
-    asked = request(every, free, branch, "standard")
-    program = specialise(asked.names, asked.form, asked.fixed)
-    if plan.loads:
-        way = TurningSense("omega", "alpha") if "omega" in given else TurningSense("omega0")
-        lines = [lines_of(*item) for item in plan.loads.items()]
-        outputs = dict(zip(every, program.outputs, strict=True))
-        program = _with_constants(with_totals(program, outputs, lines, totals_of(plan), way), plan.loads)
-    return PageFunction(base, plan.shown, program.inputs, emit_javascript(program, f"of_{base}"))
+def _module(content: Content, groups: Iterable[Sequence[str]]) -> Module:
+    """The module of the outputs, as `compile` writes it, whose inputs are all open; with closed forms."""
+    asked = asked_of(content, content.outputs)
+    stable = _with_constants(asked.stable("standard"), asked.loads)
+    outputs = [Symbol(*quantity(name, asked.request.form.state)) for name in content.outputs]
+    closed = {
+        "limits": closed_form(LIMITS, ANGLES).program,
+        "turn": closed_form(DEAD_CENTRES, TURN, branch=float(content.branch), turning=1.0).program,
+    }
+    for group, program in closed.items():
+        names = {line.name: f"{group}_{line.name}" for line in program.lines}
+        lines = *stable.lines, *renamed(program, names).lines
+        stable = stable._replace(lines=lines, outputs=(*stable.outputs, *CLOSED[group]))
+        outputs += [Symbol(name, "1", "a closed form of the lengths") for name in CLOSED[group]]
+    inputs = tuple(Symbol(n, INPUTS[n].unit, INPUTS[n].meaning) for n in ORDER if n in content.inputs)
+    every_table = (part for item in asked.loads.items() for part in tables_of(*item).items())
+    tables = {name: table.arrays() for name, table in every_table}
+    module = Module("page", (), inputs, tuple(outputs), Forms(-1, stable), constants(), tables=tables)
+    every = (*groups, *CLOSED.values())
+    made = dict(zip((symbol.name for symbol in outputs), stable.outputs, strict=True))
+    taken = {names[0]: keep_outputs(stable, [made[n] for n in names]).inputs for names in every}
+    return module._replace(groups=every, arguments={n: taken[names[0]] for names in every for n in names})
 
 
 def _with_constants(program: Program, forces: Iterable[str]) -> Program:
@@ -195,19 +205,6 @@ def _with_constants(program: Program, forces: Iterable[str]) -> Program:
         pair = [line._replace(name=table), Line(line.name, "add", (table, force))] if force else [line]
         lines += pair
     return program._replace(inputs=(*program.inputs, *sums.values()), lines=tuple(lines))
-
-
-def closed_functions(branch: int) -> dict[str, str]:
-    """The functions of the lengths of a design, which are closed forms: limit angles, figures of a turn."""
-    turn = ("stroke", "time_ratio", "theta_outer", "theta_inner", "max_pressure_angle")
-    forms = {
-        "limits": closed_form(LIMITS, ANGLES).program,
-        "turn": closed_form(DEAD_CENTRES, turn, branch=float(branch), turning=1.0).program,
-    }
-    return {
-        name: emit_javascript(program._replace(inputs=LENGTHS), f"of_{name}")
-        for name, program in forms.items()
-    }
 
 
 def _angles(given: Mapping[str, Value], cycle: float) -> tuple[float, float]:

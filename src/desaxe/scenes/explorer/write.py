@@ -6,8 +6,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from ...compiler.languages.javascript import HEADER, TABLES
-from ...compiler.languages.shared import arrays_of
+from ...compiler.languages.es_module import JavaScript
 from ...definitions.tables import tables_of as definitions_of
 from ...loads.along_motion import OverSpeed, members_of
 from ...loads.elements import Damper, Spring
@@ -23,7 +22,7 @@ from ...support.template import file_text, filled
 from ...support.written import UNSEALED, sealed, write_whole
 from ...units.system import DIMENSIONS
 from ..written import load_table, value_text
-from .content import PageContent, closed_functions, left_out_text
+from .content import CLOSED, PageContent, left_out_text
 
 # In the order in which they build on each other.
 SCRIPTS = ("numbers", "designs", "words", "mechanism", "charts", "controls", "files", "main")
@@ -37,7 +36,7 @@ WORDS: dict[type, str] = {
     Damper: "by a damper",
 }
 # A page repeats its lines for each quantity; what they mean stands in generated/program.py.
-_COMMENT = re.compile(r"^\s*//.*\n|(?<=;) // .*", re.MULTILINE)
+_COMMENT = re.compile(r"^\s*(?://.*|/\*\*.*\*/)\n|(?<=;) // .*", re.MULTILINE)
 
 
 def write_page(content: PageContent, path: Path, overwrite: bool = False) -> Path:
@@ -57,8 +56,8 @@ def page(content: PageContent) -> str:
         TITLE=escape(content.title),
         STYLE=_asset("style.css"),
         PLOTLY=get_plotlyjs(),
-        CONTENT=json.dumps(_data(content), ensure_ascii=False).replace("<", "\\u003c"),
-        PROGRAM=_program(content),
+        CONTENT=_embedded(_data(content)),
+        MODULE=_embedded(_COMMENT.sub("", JavaScript().files(content.module)["page.js"])),
         SCRIPTS=_COMMENT.sub("", "\n".join(_asset(f"{name}.js") for name in SCRIPTS)),
     )
     return sealed(page)
@@ -68,22 +67,14 @@ def _asset(name: str) -> str:
     return file_text(__package__, "page", name)
 
 
-def _program(content: PageContent) -> str:
-    """The emitted functions with the tables that they look into, and a table of them."""
-    closed = closed_functions(content.branch)
-    sources = [*closed.values(), *(function.source for function in content.functions)]
-    names = [*closed, *(function.quantity for function in content.functions)]
-    parts = [part for item in content.loads.items() for part in tables_of(*item).items()]
-    arrays = arrays_of({name: table.arrays() for name, table in parts})
-    columns = [f"const {name} = {json.dumps([*column])};" for name, column in arrays.items()]
-    rows = [f"  {name}: of_{name}," for name in names]
-    code = _COMMENT.sub("", "\n".join(sources))
-    lines = [HEADER, *[TABLES] * bool(arrays), *columns, code, "const FUNCTIONS = {", *rows, "};"]
-    return "\n".join(lines)
+def _embedded(data: Any) -> str:
+    """Data as JSON in a page."""
+    return json.dumps(data, ensure_ascii=False).replace("<", "\\u003c")
 
 
 def _data(content: PageContent) -> dict[str, Any]:
     """The data that the scripts of the page read."""
+    groups = content.groups | CLOSED
     return {
         "title": content.title,
         "branch": content.branch,
@@ -100,7 +91,9 @@ def _data(content: PageContent) -> dict[str, Any]:
         },
         "dimensions": {unit: name.replace(" ", "_") for name, unit in DIMENSIONS.items()},
         "parameters": {name: row.unit for name, row in INPUTS.items()},
-        "functions": {f.quantity: {"names": f.names, "inputs": f.inputs} for f in content.functions},
+        "groups": content.groups,
+        "arguments": {base: content.module.taken(names[0]) for base, names in groups.items()},
+        "closed": CLOSED,
         "loads": {name: _load(name, load) for name, load in content.loads.items()},
         "quantities": {row.name: _about(row.name, row.unit, row.meaning) for row in content.quantities},
         "definitions": definitions_of(content.definitions),

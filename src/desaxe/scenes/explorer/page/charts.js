@@ -18,7 +18,7 @@ function buildChooser(chart, index) {
     `<div class="chooser"><select id="quantity-${index}" aria-label="Quantity of chart ${index + 1}"></select>` +
     `<select id="by-${index}" aria-label="The value or a sensitivity"></select></div>` +
     `<div class="plot" id="plot-${index}" role="img"></div><p class="note" id="note-${index}"></p>`;
-  const bases = Object.keys(CONTENT.functions).filter((base) => base !== "status");
+  const bases = Object.keys(CONTENT.groups).filter((base) => base !== "status");
   const option = (base) => {
     const about = CONTENT.quantities[base];
     return `<option value="${base}">${plainSymbol(base, false)} – ${about.meaning}</option>`;
@@ -30,14 +30,14 @@ function buildChooser(chart, index) {
 }
 
 function showChoice(index) {
-  const name = state.shown[index], [base] = HOME[name];
+  const name = state.shown[index], base = HOME[name];
   document.getElementById(`quantity-${index}`).value = base;
   const by = document.getElementById(`by-${index}`);
   const words = (own) => {
     const over = CONTENT.quantities[own].by.map((p) => plainSymbol(p, false)).join(", ");
     return over ? `∂/∂${over}: its sensitivity` : "the value";
   };
-  by.innerHTML = CONTENT.functions[base].names.map((own) => `<option value="${own}">${words(own)}</option>`).join("");
+  by.innerHTML = CONTENT.groups[base].map((own) => `<option value="${own}">${words(own)}</option>`).join("");
   by.value = name;
 }
 

@@ -1,23 +1,18 @@
 // Designs and what is computed of them. A design is an object input -> value in SI units.
 
-const HOME = {}; // name -> [the quantity whose function computes it, its place among the answers]
-for (const [base, { names }] of Object.entries(CONTENT.functions)) {
-  names.forEach((name, place) => (HOME[name] = [base, place]));
-}
+// name -> the quantity that it is, or is a sensitivity of, or the closed forms that it is one of
+const GROUPS = Object.entries({ ...CONTENT.groups, ...CONTENT.closed });
+const HOME = Object.fromEntries(GROUPS.flatMap(([base, names]) => names.map((name) => [name, base])));
 const TURN = 2 * Math.PI;
 const SAMPLES = 721;
 const BESIDE = 1e-9; // rad: the sides of a jump, which every function has on its own side there
 const NEARER = [1, 2, 3, 4, 5, 6, 7, 8].map((k) => 4 ** -k); // of a step towards a border
 
-function answers(base, design, theta) {
-  const { inputs } = CONTENT.functions[base];
-  return FUNCTIONS[base](...inputs.map((name) => (name === "theta" ? theta : (design[name] ?? 0))));
+function valueAt(name, design, theta) {
+  return MODULE[name](...CONTENT.arguments[HOME[name]].map((input) => (input === "theta" ? theta : (design[input] ?? 0))));
 }
 
-function valueAt(name, design, theta) {
-  const [base, place] = HOME[name];
-  return answers(base, design, theta)[place];
-}
+const closedForms = (group, design) => CONTENT.closed[group].map((name) => valueAt(name, design, 0));
 
 const statusAt = (design, theta) => valueAt("status", design, theta);
 const marginOf = (design) => valueAt("margin", design, 0);
@@ -109,8 +104,8 @@ function curve(name, design) {
 }
 
 // The arcs of one turn in which the linkage cannot be assembled, as [from, to]; one across 0 goes on beyond a turn.
-function gaps({ ec, AB, BC }) {
-  const angles = FUNCTIONS.limits(ec, AB, BC).filter((angle) => !Number.isNaN(angle));
+function gaps(design) {
+  const angles = closedForms("limits", design).filter((angle) => !Number.isNaN(angle));
   if (!angles.length) return [[0, TURN]];
   const ends = angles.length === 2 ? [[angles[1], angles[0]]] : [[angles[1], angles[2]], [angles[3], angles[0]]];
   const arcs = ends.map(([from, to]) => [turned(from), turned(from) + turned(to - from)]);
@@ -141,7 +136,7 @@ const canTurn = (design) => marginOf(design) >= 0;
 // Stroke, time ratio, dead centres and the largest pressure angle of a crank that turns; null where it does not.
 function turnOf(design) {
   if (!canTurn(design)) return null;
-  const [stroke, ratio, outer, inner, pressure] = FUNCTIONS.turn(design.ec, design.AB, design.BC);
+  const [stroke, ratio, outer, inner, pressure] = closedForms("turn", design);
   return { stroke, ratio, outer: turned(outer), inner: turned(inner), pressure };
 }
 

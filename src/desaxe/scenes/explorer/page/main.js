@@ -2,7 +2,7 @@
 
 const state = {
   designs: CONTENT.designs.map((design) => ({ ...design })), // the first is the one that is changed
-  shown: [CONTENT.shown[0], CONTENT.shown[1] ?? CONTENT.functions[HOME[CONTENT.shown[0]][0]].names.at(1)],
+  shown: [CONTENT.shown[0], CONTENT.shown[1] ?? CONTENT.groups[HOME[CONTENT.shown[0]]].at(1)],
   theta: CONTENT.theta[0] + (CONTENT.theta[1] - CONTENT.theta[0]) / 6,
   playing: 0,
 };

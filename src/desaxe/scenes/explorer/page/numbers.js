@@ -1,6 +1,9 @@
 // Numbers as a person reads them: units of the controls, digits, names with subscripts.
 
-const CONTENT = JSON.parse(document.getElementById("content").textContent);
+const embedded = (id) => JSON.parse(document.getElementById(id).textContent);
+const CONTENT = embedded("content");
+// The module that computes all values, as `desaxe compile --to javascript` writes it.
+const MODULE = { ...(await import(URL.createObjectURL(new Blob([embedded("module")], { type: "text/javascript" })))) };
 
 // What one of a unit is in its SI unit, as an exact fraction; pi with fifty digits.
 const DIGITS = 10n ** 50n, PI = 314159265358979323846264338327950288419716939937510n;
