@@ -122,10 +122,45 @@ def test_inputs_of_one_index_or_dimension_vary_together_in_a_grid(kind, load):
     of_machine = machine.grid("a_C", theta=ANGLES, ec=1e3 * ec, AB=1e3 * AB, BC=[350, 400])
     np.testing.assert_allclose(of_machine.a_C.transpose(*result.a_C.dims), 1e3 * result.a_C, rtol=1e-12)
     assert of_machine.ec.values.tolist() == [0.0, 100.0]
-    with pytest.raises(TypeError, match="reduce= is for plain arrays"):
-        dx.grid("a_C", ec=ec, AB=AB, reduce={"theta": "max"}, **inputs)
     with pytest.raises(ValueError, match="design"):
         dx.grid("a_C", ec=ec[:1], AB=AB, **inputs)
+
+
+@pytest.mark.parametrize("load", [None, dx.over_Y([0.2, 0.3, 0.4], [90.0, -400.0, 50.0], [0.0] * 3)])
+def test_a_shared_dimension_is_reduced_cut_filled_and_stored(load, tmp_path):
+    """As each of its designs alone, and as NumPy takes extremes and means of these."""
+    ec, AB = (xr.DataArray(v, dims="design", coords=EC.coords) for v in ([0.0, 0.1, 0.05], [0.12, 0.1, 0.15]))
+    inputs = {"theta": ANGLES, "BC": [0.35, 0.4], "omega0": 10.0, "m_slider": 2.0}
+    inputs |= {} if load is None else {"F_Y": load}
+    shared = {"ec": ec, "AB": AB, **inputs}
+    alone = [dx.grid("T_in", **{**inputs, "ec": ec[k].item(), "AB": AB[k].item()}).T_in for k in range(3)]
+    whole = np.stack([one.transpose("theta", "BC") for one in alone])
+    every = dx.grid("T_in", chunks={"design": 2, "theta": 3}, **shared).compute(scheduler="synchronous")
+    np.testing.assert_array_equal(every.T_in.transpose("design", "theta", "BC"), whole)
+    assert every.design.values.tolist() == ["a", "b", "c"]
+    assert every.maker.values.tolist() == [1, 2, 3]
+    out = np.empty((3, 5, 2))
+    assert dx.grid("T_in", out=out, **shared)["T_in"] is out
+    np.testing.assert_array_equal(out, whole)
+    by_theta = dx.grid("T_in", reduce={"theta": ["absmax", "mean"]}, **shared)
+    assert by_theta.T_in_absmax.dims == ("design", "BC")
+    np.testing.assert_array_equal(by_theta.T_in_absmax, np.abs(whole).max(axis=1))
+    np.testing.assert_allclose(by_theta.T_in_mean, whole.mean(axis=1), rtol=1e-12)
+    by_design = dx.grid("T_in", reduce={("theta", "design"): "max"}, **shared)
+    assert by_design.T_in_max.dims == ("BC",)
+    np.testing.assert_array_equal(by_design.T_in_max, whole.max(axis=(0, 1)))
+    place = by_design.isel(BC=0)
+    design, angle = int(place.T_in_max_design), float(place.T_in_max_theta)
+    assert whole[design, ANGLES.tolist().index(angle), 0] == place.T_in_max
+    at = dx.grid("T_in", reduce={"theta": [("at", ANGLES[2], "T_in")]}, **shared)
+    np.testing.assert_array_equal(at.to_array()[0].transpose("design", "BC"), whole[:, 2])
+    with pytest.raises(TypeError, match="expected one value of design"):
+        dx.grid("T_in", reduce={"design": [("at", 1.0, "T_in")]}, **shared)
+    numbered = {**shared, **{n: shared[n].assign_coords(design=[4, 5, 6]) for n in ("ec", "AB")}}
+    store = dx.sweep("T_in", peaks="T_in", store=tmp_path / "designs.zarr", chunks={"design": 2}, **numbered)
+    np.testing.assert_array_equal(store.T_in.transpose("design", "theta", "BC"), whole)
+    alone = dx.peak("T_in", **{**inputs, "theta": (ANGLES[0], ANGLES[-1]), "ec": 0.1, "AB": 0.1, "BC": 0.4})
+    assert float(store.peak_absmax_T_in.sel(design=5, BC=0.4)) == pytest.approx(alone["value"], rel=1e-12)
 
 
 def test_a_series_without_a_name_of_its_index_is_an_axis():

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from math import prod
 from sys import float_info
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +14,13 @@ from ..mechanism.read import read_array
 from ..runtime.executor import run_in_blocks
 from ..runtime.kernels import KernelKey, key_of
 from ..runtime.point import point_of
-from ..runtime.request import Request, as_number
+from ..runtime.request import as_number
+from ..support.forks import IMPORTS
 from ..support.memory import require
 from ..support.shown import shown
 
 if TYPE_CHECKING:
-    from .under_loads.request import LoadInputs
+    from .values import Call
 
 Array = NDArray[Any]
 
@@ -30,50 +31,39 @@ LEAST, MOST = SAFE
 FLOAT, STATUS = np.dtype(np.float64), np.dtype(np.int8)
 
 
-class Loops(NamedTuple):
-    """The lengths of the loops, outermost first; for each input its values along its loop, and which one."""
-
-    sizes: tuple[int, ...]
-    columns: dict[str, Array]
-    axis_of: dict[str, int]
-
-    def taken_by(self, requested: Request) -> "Loops":
-        """The loops with the columns that a request takes; a force may vary where nothing else does."""
-        columns = {name: column for name, column in self.columns.items() if name in requested.inputs}
-        return (
-            self
-            if len(columns) == len(self.columns)
-            else self._replace(columns=columns, axis_of={n: self.axis_of[n] for n in columns})
-        )
+Keys = dict[Any, KernelKey] | None
+# The lengths of the loops, outermost first; for each input its values along its loop, and which one.
+Loops = tuple[tuple[int, ...], dict[str, Array], dict[str, int]]
 
 
 def evaluate_arrays(
-    requested: Request,
-    inputs: Sequence[str],
-    given: Mapping[str, Any],
-    threads: int | None,
-    out: Any,
-    loads: "LoadInputs | None" = None,
-    keys: dict[Any, KernelKey] | None = None,
+    call: "Call", inputs: Mapping[str, Any], threads: int | None, out: Any = None, keys: Keys = None
 ) -> dict[str, Array]:
-    """The values by requested name, in the broadcast shape.
-
-    inputs   those that are numbers or arrays of the caller; others follow from `loads`
-    keys     the kernels of the request that are remembered
-    """
-    names = requested.shown
+    """The values by requested name, in the broadcast shape; `keys` are the kernels of earlier calls."""
+    names = call.asked.shown
     scalars: dict[str, Any] = {}
     arrays: dict[str, Array] = {}
-    labelled = False
-    for name in inputs:
-        value = given.get(name)
+    others = False
+    for name in call.inputs:
+        value = inputs.get(name)
         if type(value) is float and (LEAST < value < MOST or is_good(name, value)):
             scalars[name] = value
         else:
-            arrays[name] = as_array(name, value, inputs, names)
-            labelled = labelled or type(value) is not np.ndarray
-    if labelled:
-        refuse_other_labels({name: given.get(name) for name in inputs})
+            arrays[name] = as_array(name, value, call.inputs, names)
+            others = others or type(value) is not np.ndarray
+    if others:
+        with IMPORTS:
+            from .labelled import by_dimensions, is_labelled, refuse_other_labels
+
+        labelled = [n for n in call.inputs if out is None and is_labelled(inputs.get(n))]
+        if labelled:
+            labels = {name: inputs[name].copy(data=arrays.pop(name)) for name in labelled}
+
+            def run(columns: Mapping[str, Array]) -> dict[str, Array]:
+                return evaluate_arrays(call, {**scalars, **arrays, **columns}, threads, None, keys)
+
+            return by_dimensions(run, names, labels, arrays, call.asked.form.state)
+        refuse_other_labels({name: inputs.get(name) for name in call.inputs})
     shapes = {array.shape for array in arrays.values()}
     shape = shapes.pop() if len(shapes) == 1 else broadcast_shape(arrays)
     places = outputs_for(names, shape, out)
@@ -81,43 +71,10 @@ def evaluate_arrays(
     if 0 not in shape:
         numbers = [name for name, array in arrays.items() if array.size == 1]
         scalars |= {name: arrays.pop(name).item() for name in numbers}
-        if loads is not None:
-            scalars |= loads.tables()
-            for name, made in _functions(loads, {**scalars, **arrays}).items() if loads.functions else ():
-                if np.ndim(made):
-                    arrays[name] = made
-                else:
-                    scalars[name] = float(made)
-        loops = loops_over(arrays, shape)
-        loops = loops if loads is None else loops.taken_by(requested)
-        fill(requested, scalars, loops, list(buffers.values()), threads, keys=keys)
+        fill(call, scalars, arrays, shape, list(buffers.values()), threads, keys=keys)
     if out is None:
         return places if shape else {name: place[()] for name, place in places.items()}
     return copied_back(places, buffers)
-
-
-def _functions(loads: "LoadInputs", given: Mapping[str, Any]) -> dict[str, Any]:
-    """The values of loads that are no tables, and their derivatives."""
-    motion = loads.motion
-    if motion is None:
-        return loads.at(given)
-    numbers = {name: np.asarray(value) for name, value in given.items() if name in INPUTS}
-    return loads.at(numbers, evaluate_arrays(motion, motion.inputs, numbers, 1, None))
-
-
-def refuse_other_labels(inputs: Mapping[str, Any]) -> None:
-    """ValueError for labelled arrays of different dimensions or rows, where arrays broadcast by position."""
-    labels = {name: value.dims for name, value in inputs.items() if hasattr(value, "dims") and value.dims}
-    if len(set(labels.values())) > 1:
-        message = ", ".join(f"{name} {dims}" for name, dims in labels.items())
-        raise ValueError(
-            f"labelled arrays of different dimensions: {message}; use grid, or pass their .values"
-        )
-    rows = [(name, value.index) for name, value in inputs.items() if hasattr(value, "iloc")]
-    for name, index in rows[1:]:
-        first, expected = rows[0]
-        if len(index) == len(expected) and not index.equals(expected):
-            raise ValueError(f"{first} and {name}: Series of different index; align them or pass .values")
 
 
 def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> Array:
@@ -216,29 +173,55 @@ def copied_back(places: dict[str, Array], buffers: Mapping[str, Array]) -> dict[
 
 
 def fill(
-    requested: Request,
-    scalars: Mapping[str, Any],
-    loops: Loops,
+    call: "Call",
+    scalars: dict[str, Any],
+    arrays: Mapping[str, Array],
+    shape: tuple[int, ...],
     outs: Sequence[Array],
     threads: int | None,
     key: KernelKey | None = None,
-    keys: dict[Any, KernelKey] | None = None,
+    keys: Keys = None,
 ) -> None:
-    """Fill contiguous outputs from scalars and the columns along loops.
+    """Fill contiguous outputs from numbers and from arrays that broadcast to a shape.
 
-    key    the kernel, where these points are a block of more that it was chosen for
+    key    the kernel, where these points are a block of more that it was chosen for: it has a loop for each
+           dimension, or a single one
     keys   the kernels of a request that are remembered
     """
-    sizes, columns, axis_of = loops
-    outs = [out.reshape(sizes) for out in outs]
+    if call.loads is not None:
+        scalars, arrays = loaded(call, scalars, arrays)
     if key is None:
-        key = key_of(requested, scalars, columns, axis_of, len(sizes), keys)
+        sizes, columns, axis_of = loops_over(arrays, shape)
+        key = key_of(call.asked, scalars, columns, axis_of, len(sizes), keys)
+    else:
+        sizes = shape if key.axes == len(shape) else (prod(shape),)
+        columns = {n: _column(a, a.shape if key.axes > 1 else shape) for n, a in arrays.items()}
     if columns:
-        run_in_blocks(key, {**scalars, **columns}, outs, threads)
+        run_in_blocks(key, {**scalars, **columns}, [out.reshape(sizes) for out in outs], threads)
         return
     point = point_of(key.names, key.form, key.fixed, key.accuracy)
     for out, value in zip(outs, point.run(scalars), strict=True):
         out[...] = value
+
+
+def loaded(
+    call: "Call", scalars: Mapping[str, Any], arrays: Mapping[str, Array]
+) -> tuple[dict[str, Any], dict[str, Array]]:
+    """The numbers and arrays that the request takes, those that follow from its loads among them."""
+    loads, inputs = call.loads, {**scalars, **arrays}
+    assert loads is not None
+    made: dict[str, Any] = {}
+    if loads.motion is not None:
+        inputs = {name: np.asarray(value) for name, value in inputs.items()}
+        motion = call._replace(asked=loads.motion, inputs=loads.motion.inputs, loads=None)
+        made = loads.at(inputs, evaluate_arrays(motion, inputs, 1))
+    elif loads.functions:
+        theta, shape = inputs["theta"], np.shape(inputs["theta"])
+        result = loads.at({"theta": theta.reshape(-1) if shape and theta.size == max(shape) else theta})
+        made = {name: value.reshape(shape) if np.ndim(value) else value for name, value in result.items()}
+    numbers = {**scalars, **loads.tables(), **{n: float(x) for n, x in made.items() if not np.ndim(x)}}
+    varying = {**arrays, **{n: x for n, x in made.items() if np.ndim(x)}}
+    return numbers, {n: x for n, x in varying.items() if n in call.asked.inputs}
 
 
 # ---- loops: a column of designs over a row of angles needs the sine of an angle once, not once a design ----
@@ -254,7 +237,7 @@ def loops_over(arrays: Mapping[str, Array], shape: Sequence[int]) -> Loops:
         name: array.reshape(-1) if array.size == size and array.flags.c_contiguous else _column(array, shape)
         for name, array in arrays.items()
     }
-    return Loops((size,), columns, dict.fromkeys(columns, 0))
+    return (size,), columns, dict.fromkeys(columns, 0)
 
 
 def _nested(arrays: Mapping[str, Array], shape: Sequence[int]) -> Loops | None:
@@ -270,7 +253,7 @@ def _nested(arrays: Mapping[str, Array], shape: Sequence[int]) -> Loops | None:
     if len(groups) < 2 or sizes[-1] < INNERMOST or any(len(own) > 1 for own in places.values()):
         return None
     columns = {name: _column(array, array.shape) for name, array in arrays.items()}
-    return Loops(sizes, columns, {name: min(own) for name, own in places.items()})
+    return sizes, columns, {name: min(own) for name, own in places.items()}
 
 
 def _varies_along(array: Array, shape: Sequence[int]) -> set[int]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache, lru_cache
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -123,10 +124,12 @@ def labelled(
     branch: int,
     accuracy: str | float = "standard",
     of: Iterable[str] = (),
+    along: Mapping[str, str] = MappingProxyType({}),
 ) -> "xr.Dataset":
     """A Dataset of variables by name (dimensions, array, attributes); a 1-d input is a dimension.
 
-    of   names that stand behind those of the variables
+    of     names that stand behind those of the variables
+    along  input -> its dimension, where that has another name
     """
     xarray = import_xarray()
     variables = dict(values)
@@ -134,7 +137,8 @@ def labelled(
         if "status" in variables and name not in ("status", "margin"):
             message["ancillary_variables"] = "status"
     coordinates = {
-        name: ((name,) if array.ndim else (), array, input_attributes(name)) for name, array in inputs.items()
+        name: ((along.get(name, name),) if array.ndim else (), array, input_attributes(name))
+        for name, array in inputs.items()
     }
     names = [name for name in values if name not in ("status", "margin")]
     about = provenance(names, inputs, branch, accuracy, of=of)

@@ -80,17 +80,17 @@ class Plan(NamedTuple):
         """The name, shape and type of each variable."""
         for step in self.all:
             for name, output in step.outputs.items():
-                yield name, [self.outer.axes[n].size for n in step.dims], output
+                yield name, [self.outer.sizes[n] for n in step.dims], output
 
     @property
     def sizes(self) -> dict[str, int]:
         """The length of each dimension of the result."""
-        return {name: self.outer.axes[name].size for name in self.dims}
+        return {name: self.outer.sizes[name] for name in self.dims}
 
     @property
     def points(self) -> int:
         """Points of the grid, those behind a reduced one included."""
-        return prod(self.outer.axes[name].size for name in self.outer.dimensions)
+        return self.outer.points
 
     def points_in(self, block: Block) -> int:
         """Points of the grid in a block, those behind a reduced one included."""
@@ -101,7 +101,7 @@ class Plan(NamedTuple):
     def behind(self) -> int:
         """Points of the reduced axes behind each point of the result."""
         axes = () if self.reductions is None else self.reductions.axes
-        return prod(self.outer.axes[name].size for name in axes)
+        return prod(self.outer.sizes[name] for name in axes)
 
     @property
     def bytes(self) -> int:
@@ -110,7 +110,7 @@ class Plan(NamedTuple):
 
     def blocks(self, lengths: Mapping[str, int]) -> Iterator[Block]:
         """All blocks in order; a step of fewer dimensions is a part of the first block that has its place."""
-        sizes, axes = self.sizes, self.outer.axes
+        sizes, columns = self.sizes, self.outer.columns
         for place in blocks_of(sizes, lengths):
             regions = slices_of(place, sizes, lengths)
             places = dict(zip(sizes, place, strict=True))
@@ -119,12 +119,14 @@ class Plan(NamedTuple):
                 for s in self.all
                 if not any(number for name, number in places.items() if name not in s.dims)
             )
-            needed = dict.fromkeys(name for part in parts for name in part.step.axes)
-            yield Block(regions, parts, {n: axes[n][regions[n]] if n in regions else axes[n] for n in needed})
+            needed = {n: dim for part in parts for n, dim in part.step.columns.items()}
+            whole = slice(None)
+            yield Block(regions, parts, {n: columns[n][regions.get(d, whole)] for n, d in needed.items()})
 
     def values(self, threads: int | None) -> dict[str, Array]:
         """All variables by name."""
-        return {n: a for step in self.all for n, a in step.compute(self.outer.axes, threads).items()}
+        columns = self.outer.columns
+        return {n: a for step in self.all for n, a in step.compute(columns, threads).items()}
 
     def values_by_blocks(
         self, threads: int | None, lengths: Mapping[str, int], before: Callable[[], None]
@@ -151,14 +153,19 @@ class Plan(NamedTuple):
     def dataset(self, arrays: Mapping[str, Array]) -> "xr.Dataset":
         """The variables as a labelled Dataset."""
         outer, reduced = self.outer, self.reductions is not None
-        kept = {n: array for n, array in outer.axes.items() if not array.ndim or n in self.dims}
         own, beside = (
             {n: (s.dims, arrays[n], message.attributes) for s in some for n, message in s.outputs.items()}
             for some in (self.steps, self.beside)
         )
         shown = own if reduced else {name: own[name] for name in outer.shown if name in own}
-        result = labelled(shown, kept, self.branch, self.accuracy, outer.names if reduced else ())
-        result = with_loads(result, outer.loads if self.steps else {})
+        inputs = {n: a for n, a in outer.axes.items() if not a.ndim or outer.along[n] in self.dims}
+        labels = {n: label for n, label in outer.labels.items() if {*label.dims} <= {*self.dims}}
+        result = labelled(
+            shown, inputs, self.branch, self.accuracy, outer.names if reduced else (), outer.along
+        )
+        result = with_loads(
+            result.assign_coords(labels) if labels else result, outer.loads if self.steps else {}
+        )
         return result.assign(beside) if beside else result
 
 
@@ -175,9 +182,10 @@ def plan_of(outer: Outer, branch: int, accuracy: Any, reductions: Reductions | N
 
 def margin_of(outer: Outer, branch: int, accuracy: Any, dims: Sequence[str]) -> tuple[Points, ...]:
     """The step of the margin, if all lengths are given and none of them is reduced."""
-    if not all(name in outer.axes and (name in dims or name not in outer.dimensions) for name in LENGTHS):
+    along = outer.of(LENGTHS)
+    if not ({*LENGTHS} <= {*outer.axes} and {*along} <= {*dims}):
         return ()
-    return (points_of(["margin"], outer, outer.lengths, branch, accuracy),)
+    return (points_of(["margin"], outer, along, branch, accuracy),)
 
 
 # ---- lazy arrays ------------------------------------------------------------------------------------
@@ -194,14 +202,14 @@ def lazy_values(plan: Plan, chunks: Any, threads: int | None) -> dict[str, Any]:
         from dask.base import tokenize
 
     lengths = chunk_lengths(chunks, plan.sizes, max(1, AUTO // max(plan.behind, 1)))
-    axes, result = plan.outer.axes, dict[str, Any]()
+    values, result = plan.outer.columns, dict[str, Any]()
     for step in plan.all:
-        token = tokenize(step.identity, *(axes[name] for name in step.axes), lengths)
+        token = tokenize(step.identity, *(values[name] for name in step.columns), lengths)
         columns = []
-        for number, name in enumerate(step.axes):
-            own = lengths.get(name, (axes[name].size,))  # a reduced axis is whole
-            column = da.from_array(axes[name], chunks=(own,), name=f"{name}-{token}", inline_array=True)
-            columns += [column, (number,)]
+        for name, dim in step.columns.items():
+            own = lengths.get(dim, (values[name].size,))  # a reduced axis is whole
+            column = da.from_array(values[name], chunks=(own,), name=f"{name}-{token}", inline_array=True)
+            columns += [column, (step.axes.index(dim),)]
         along = tuple(range(len(step.dims)))
         empty = np.empty((0,) * len(along), object)
         with warnings.catch_warnings():
@@ -220,14 +228,14 @@ def lazy_values(plan: Plan, chunks: Any, threads: int | None) -> dict[str, Any]:
 
 
 class ChunkTask(NamedTuple):
-    """A step in a chunk, from the values of its axes; it pickles."""
+    """A step in a chunk, from the values of its columns; it pickles."""
 
     step: Step
     threads: int
 
     def __call__(self, *values: Array) -> dict[str, Array]:
         """The outputs by name."""
-        return self.step.compute(dict(zip(self.step.axes, values, strict=True)), self.threads)
+        return self.step.compute(dict(zip(self.step.columns, values, strict=True)), self.threads)
 
 
 def _output(block: Any, name: str) -> Array:

@@ -9,6 +9,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from math import prod
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -20,15 +21,14 @@ from ..mechanism.catalogue import of_design
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LENGTHS, STATUS
-from ..mechanism.own import Definition, Register, register, used_by, using
+from ..mechanism.own import Definition, Register, register, used_by
 from ..mechanism.program import Variant, program_of
 from ..runtime.kernels import KernelKey, key_of
-from ..runtime.request import Request, as_number, check_common, several
+from ..runtime.request import as_number, check_common, several
 from ..support.forks import IMPORTS
-from .arrays import Loops, as_array, copied_back, dtype_of, evaluate_arrays, fill, outputs_for, scratch_for
+from .arrays import as_array, copied_back, dtype_of, evaluate_arrays, fill, outputs_for, scratch_for
 from .labels import Output, attributes
-from .under_loads.request import LoadInputs
-from .values import checked_request, values
+from .values import Call, prepared
 
 Array = NDArray[Any]
 ALWAYS = ("status", "margin")
@@ -39,19 +39,40 @@ ARGUMENTS = (*INPUTS, *OPTIONS)  # of a grid, by name
 class Outer(NamedTuple):
     """The arguments of a grid, checked.
 
-    `given` are the inputs as they came; `axes` their arrays; `loads` those that vary with the motion, which
-    are no axes.
+    given   the inputs as they came, without loads
+    axes    their arrays
+    along   input -> its dimension, of those that have one: its own name, or one that several share
+    loads   those that vary with the motion, which are no axes
+    labels  coordinates of shared dimensions
     """
 
     names: tuple[str, ...]
     given: dict[str, Any]
     axes: dict[str, Array]
+    along: dict[str, str]
     loads: Mapping[str, Load] = MappingProxyType({})
+    labels: Mapping[str, Any] = MappingProxyType({})
 
     @property
     def dimensions(self) -> list[str]:
-        """The inputs with one axis, in their order."""
-        return [name for name, array in self.axes.items() if array.ndim]
+        """The dimensions, in the order of the inputs."""
+        return [*dict.fromkeys(self.along.values())]
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """The length of each dimension."""
+        return {dim: self.axes[name].size for name, dim in self.along.items()}
+
+    @property
+    def columns(self) -> dict[str, Array]:
+        """The arrays of the inputs, and of shared dimensions the positions along them."""
+        shared = {dim: np.arange(float(n)) for dim, n in self.sizes.items() if dim not in self.axes}
+        return {**self.axes, **shared}
+
+    @property
+    def points(self) -> int:
+        """The number of points."""
+        return prod(self.sizes.values())
 
     @property
     def shown(self) -> tuple[str, ...]:
@@ -69,23 +90,24 @@ class Outer(NamedTuple):
         others = [name for name in self.shown if name not in whole]
         if others == [STATUS] and "theta" not in self.axes:  # that of the design
             others, rest = [], [STATUS, *rest]
-        groups = [(others, self.dimensions), (rest, self.lengths), (both, [*self.lengths, *self._reverses])]
+        lengths = self.of(LENGTHS)
+        groups = [(others, self.dimensions), (rest, lengths), (both, self.of((*LENGTHS, *self._reverses)))]
         return [(names, along) for names, along in groups if names]
 
     @property
     def _reverses(self) -> list[str]:
-        """The axis of speeds of which some are negative, but not all."""
-        axes = {name: self.axes[name] for name in ("omega0", "omega") if name in self.dimensions}
+        """The speeds of which some are negative, but not all."""
+        axes = {name: self.axes[name] for name in ("omega0", "omega") if name in self.along}
         return [
-            name
-            for name, speeds in axes.items()
+            n
+            for n, speeds in axes.items()
             if not (all(speeds >= 0.0) or all(speeds < 0.0)) or not speeds.size
         ]
 
-    @property
-    def lengths(self) -> list[str]:
-        """The dimensions that are lengths."""
-        return [name for name in self.dimensions if name in LENGTHS]
+    def of(self, inputs: Sequence[str]) -> list[str]:
+        """The dimensions of some inputs, in their order."""
+        dims = {self.along[name] for name in inputs if name in self.along}
+        return [dim for dim in self.dimensions if dim in dims]
 
 
 @lru_cache(maxsize=256)
@@ -103,15 +125,20 @@ def outer_of(
     requested = (names,) if isinstance(names, str) else several(names)
     check_inputs("grid", inputs, ARGUMENTS)
     loads: Mapping[str, Load] = {}
-    if any(callable(value) or hasattr(value, "dims") for value in inputs.values()):
+    shared: Mapping[str, str] = {}
+    labels: Mapping[str, Any] = {}
+    if any(callable(value) or hasattr(value, "dims") or hasattr(value, "iloc") for value in inputs.values()):
         with IMPORTS:
-            from .under_loads.loaded import split_axes
+            from .labelled import labels_of, shared_dimensions, split_axes
 
         inputs, loads = split_axes(inputs)
+        shared = shared_dimensions(inputs)
+        labels = labels_of(inputs, shared)
     check_common(inputs, branch, threads)
     shown = tuple(dict.fromkeys((*requested, *ALWAYS))) if always else requested
     axes = {n: axis_of(n, value, (), shown) for n, value in inputs.items() if value is not None}
-    return Outer(requested, dict(inputs), axes, loads)
+    along = {name: shared.get(name, name) for name, array in axes.items() if array.ndim}
+    return Outer(requested, dict(inputs), axes, along, loads, labels)
 
 
 def axis_of(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> Array:
@@ -137,6 +164,11 @@ class Step(ABC):
         return self.dims
 
     @property
+    def columns(self) -> dict[str, str]:
+        """What it needs the values of, and the dimension of each."""
+        return {dim: dim for dim in self.axes}
+
+    @property
     def own(self) -> tuple[Definition, ...]:
         """The definitions that it needs, but for those that the request of a store tells."""
         return ()
@@ -153,32 +185,33 @@ class Step(ABC):
 
     @abstractmethod
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
-        """The outputs of a block by name, from the values along each of its `axes`."""
+        """The outputs of a block by name, from the values of its `columns`."""
 
 
 @dataclass(frozen=True)
 class Points(Step):
     """The values of names over some dimensions; without arrays, so that it pickles small.
 
-    wanted   the request
-    inputs   those that are numbers here, or dimensions
+    call     the request, with its loads
+    along    the inputs along each dimension
     numbers  the inputs that are numbers here
     key      the kernel of all blocks
-    branch   the assembly
-    loads    the inputs that follow from loads which vary with the motion; derivatives are total ones then
     """
 
-    wanted: Request
-    inputs: tuple[str, ...]
+    call: Call
+    along: tuple[tuple[str, str], ...]
     numbers: tuple[tuple[str, float], ...]
     key: KernelKey
-    branch: int
-    loads: LoadInputs | None = None
+
+    @property
+    def columns(self) -> dict[str, str]:
+        """The inputs that have a dimension."""
+        return dict(self.along)
 
     @property
     def names(self) -> tuple[str, ...]:
         """The names, as the user says them."""
-        return self.wanted.shown
+        return self.call.asked.shown
 
     @property
     def own(self) -> tuple[Definition, ...]:
@@ -188,80 +221,61 @@ class Points(Step):
     @property
     def outputs(self) -> dict[str, Output]:
         """The outputs by name: their types and CF attributes."""
-        state = self.wanted.form.state
+        state = self.call.asked.form.state
         return {name: Output(dtype_of(name), attributes(name, state)) for name in self.names}
 
     @property
     def identity(self) -> str:
         """A text that tells the step from all others, by what its loads are too."""
-        loads = () if self.loads is None else self.loads.loads.values()
+        loads = () if self.call.loads is None else self.call.loads.loads.values()
         return " ".join([repr(self), *(load.identity for load in loads)])
 
     def compute(
         self, values: Mapping[str, Array], threads: int | None = 1, out: Any = None
     ) -> dict[str, Array]:
-        """The outputs of a block by name, from the values along each of its dimensions; in `out` if given."""
-        shape = tuple(values[name].size for name in self.dims)
+        """The outputs of a block by name, from the values of its `columns`; in `out` if it is an array."""
+        arrays = outer_arrays(values, self.columns, self.dims)
+        shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
         places = outputs_for(self.names, shape, out)
         buffers = places if out is None else scratch_for(places, values.values())
         if all(shape):
-            self._fill(values, list(buffers.values()), threads)
+            needed = {name: array for name, array in arrays.items() if name in self.call.inputs}
+            fill(self.call, dict(self.numbers), needed, shape, list(buffers.values()), threads, self.key)
         return copied_back(places, buffers)
 
     def at(self, points: Mapping[str, Array]) -> dict[str, Array]:
-        """The values under loads at points, whose inputs are columns of one length."""
-        assert self.loads is not None
-        inputs = {**dict(self.numbers), **points, **self.loads.loads}
-        with using(self.own):
-            result: dict[str, Array] = values(self.names, inputs, self.branch, self.wanted.accuracy, 1)
-        return result
-
-    def _fill(self, values: Mapping[str, Array], outs: Sequence[Array], threads: int | None) -> None:
-        """Fill outputs of a block."""
-        columns = {name: np.ascontiguousarray(values[name]) for name in self.dims if name in self.inputs}
-        scalars: dict[str, Any] = dict(self.numbers)
-        axes = {name: self.dims.index(name) for name in columns}
-        if self.loads is not None and self.loads.motion is not None:
-            self._of_motion(columns, outs, threads)
-            return
-        if self.loads is not None:
-            scalars |= self.loads.tables()
-            along = columns if "theta" in columns else scalars
-            along.update(self.loads.at({"theta": along["theta"]}))
-            axes |= {name: axes["theta"] for name in self.loads.functions if name in columns}
-        loops = Loops(tuple(values[name].size for name in self.dims) or (1,), columns, axes)
-        fill(self.wanted, scalars, loops.taken_by(self.wanted), outs, threads, self.key)
-
-    def _of_motion(self, columns: Mapping[str, Array], outs: Sequence[Array], threads: int | None) -> None:
-        """Fill outputs under loads over the motion, whose values vary over all dimensions."""
-        count = len(self.dims)
-        along = {
-            n: column.reshape([-1 if dim == n else 1 for dim in self.dims]) for n, column in columns.items()
-        }
-        given = {**dict(self.numbers), **along}
-        if not count:
-            given["theta"] = np.array(given["theta"])
-        result = evaluate_arrays(self.wanted, self.inputs, given, threads, None, self.loads)
-        for out, array in zip(outs, result.values(), strict=True):
-            out[...] = array
+        """The values at points, whose inputs are columns of one length."""
+        return evaluate_arrays(self.call, {**dict(self.numbers), **points}, 1)
 
 
-def points_of(names: Sequence[str], outer: Outer, along: Sequence[str], branch: int, accuracy: Any) -> Points:
+def outer_arrays(
+    values: Mapping[str, Array], along: Mapping[str, str], dims: Sequence[str]
+) -> dict[str, Array]:
+    """Columns along their dimensions, as arrays that broadcast to a grid."""
+    return {n: values[n].reshape([-1 if one == dim else 1 for one in dims]) for n, dim in along.items()}
+
+
+def points_of(names: Sequence[str], outer: Outer, dims: Sequence[str], branch: int, accuracy: Any) -> Points:
     """The step of names over dimensions of a grid, checked; TypeError for what is missing."""
-    call = checked_request(tuple(names), outer.given, branch, accuracy, outer.loads)
-    requested, inputs, loads = call.asked, call.inputs, call.of_loads(outer.loads)
-    for name in inputs:
+    call, _, keys = prepared(tuple(names), outer.given, branch, accuracy, outer.loads)
+    for name in call.inputs:
         if name not in outer.axes:
-            as_number(name, None, inputs, requested.shown)
-    own = {name: outer.axes[name] for name in inputs}
-    scalars = {n: float(axis.reshape(-1)[0]) for n, axis in own.items() if n not in along and axis.size}
-    columns = {n: np.ascontiguousarray(axis) for n, axis in own.items() if n in along}
-    axis_of = {name: along.index(name) for name in columns}
-    if loads is not None and "theta" in columns:  # the values of functions are along it
-        columns |= dict.fromkeys(loads.functions, columns["theta"])
-        axis_of |= dict.fromkeys(loads.functions, axis_of["theta"])
-    loops = Loops(tuple(outer.axes[name].size for name in along) or (1,), columns, axis_of).taken_by(
-        requested
-    )
-    key = key_of(requested, scalars, loops.columns, loops.axis_of, len(loops.sizes), call.keys)
-    return Points(tuple(along), requested, tuple(inputs), tuple(scalars.items()), key, int(branch), loads)
+            as_number(name, None, call.inputs, call.asked.shown)
+    along = {name: dim for name, dim in outer.along.items() if dim in dims}
+    numbers = {
+        n: float(outer.axes[n].reshape(-1)[0]) for n in call.inputs if n not in along and outer.axes[n].size
+    }
+    columns = {n: outer.axes[n] for n in call.inputs if n in along}
+    axis_of, axes = {name: dims.index(along[name]) for name in columns}, max(1, len(dims))
+    if call.loads is not None:
+        motion, moves = call.loads.motion, ["theta"]
+        if motion is not None:  # its columns vary over all dimensions: one loop over all points
+            moves = ["theta", *motion.inputs]
+            axis_of, axes = dict.fromkeys(axis_of, 0), 1
+        first = next((name for name in moves if name in columns), None)
+        if first is not None:
+            columns |= dict.fromkeys(call.loads.functions, columns[first])
+            axis_of |= dict.fromkeys(call.loads.functions, axis_of[first])
+        axis_of = {name: axis for name, axis in axis_of.items() if name in call.asked.inputs}
+    key = key_of(call.asked, numbers, columns, axis_of, axes, keys)
+    return Points(tuple(dims), call, tuple(along.items()), tuple(numbers.items()), key)

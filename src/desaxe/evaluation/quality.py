@@ -22,8 +22,9 @@ from ..mechanism.catalogue import quantity
 from ..mechanism.messages import message_of
 from ..mechanism.names import LENGTHS, parts, sensitivity
 from ..runtime.request import BOUNDS, accuracy_of, check_common, request, several
-from .arrays import as_array, broadcast_shape, refuse_other_labels
-from .under_loads.request import MOTION, plan_for
+from .arrays import as_array, broadcast_shape
+from .labelled import refuse_other_labels
+from .under_loads import MOTION, plan_for
 from .values import values
 
 Array = NDArray[np.float64]

@@ -6,21 +6,42 @@ A single point stays in this file and needs only `math`; as soon as an input is 
 from collections.abc import Mapping, Sequence
 from functools import cache
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..mechanism.inputs import SAFE, is_good
-from ..mechanism.own import Register, register
-from ..runtime.point import point_of
-from ..runtime.request import accuracy_of, as_number, check_common, is_steady, request, several
+from ..mechanism.own import register
+from ..runtime.point import PointFunction, point_of
+from ..runtime.request import Request, accuracy_of, as_number, check_common, request, several
 from ..support.forks import IMPORTS, imported
 
 if TYPE_CHECKING:
     from ..loads.load import Load
-    from .under_loads.request import LoadInputs
+    from .under_loads import LoadInputs
 
 NO_LOADS: "Mapping[str, Load]" = MappingProxyType({})
 LEAST, MOST = SAFE
 MOST_KNOWN = 1024  # requests that are remembered
+
+
+class Call(NamedTuple):
+    """A checked request, under loads or not; it pickles.
+
+    asked   the request
+    inputs  those that are numbers or arrays of the caller
+    loads   the inputs that follow from loads which vary with the motion; derivatives are total ones then
+    """
+
+    asked: Request
+    inputs: tuple[str, ...]
+    loads: "LoadInputs | None" = None
+
+
+class PreparedCall(NamedTuple):
+    """A call with its function of a point, and the kernels of arrays so far, by what they go by."""
+
+    call: Call
+    point: PointFunction
+    keys: dict[Any, Any]
 
 
 def values(
@@ -38,130 +59,76 @@ def values(
     requested = (names,) if isinstance(names, str) else several(names)
     if threads is not None or inputs.get("omega") is not None or type(branch) is not int:
         check_common(inputs, branch, threads)
+    loads = NO_LOADS
     if any(map(callable, inputs.values())):
-        numbers, loads = _split()({n: value for n, value in inputs.items() if value is not None})
-        call = checked_request(requested, numbers, branch, accuracy, loads)
-        answer = call.answer(numbers, threads, out, loads)
+        inputs, loads = _split()({name: value for name, value in inputs.items() if value is not None})
+    call, point, keys = prepared(requested, inputs, branch, accuracy, loads)
+    numbers = _numbers(call, inputs)
+    if numbers is None:
+        result = _evaluate_arrays()(call, inputs, threads, out, keys)
+        return result[names] if isinstance(names, str) else result
+    if out is not None:
+        raise TypeError("out= is for arrays, but every input is a number")
+    if call.loads is None:
+        answer = point.function(*numbers)
     else:
-        answer = checked_request(requested, inputs, branch, accuracy).answer(inputs, threads, out)
-    if type(answer) is tuple:
-        return answer[0] if isinstance(names, str) else dict(zip(requested, answer, strict=True))
-    return answer[names] if isinstance(names, str) else answer
+        answer = point.run(call.loads.at_point(dict(zip(call.inputs, numbers, strict=True))))
+    return answer[0] if isinstance(names, str) else dict(zip(requested, answer, strict=True))
 
 
-def checked_request(
+def _numbers(call: Call, inputs: Mapping[str, Any]) -> list[float] | None:
+    """The inputs of a point; None if one is an array."""
+    numbers = []
+    for name in call.inputs:
+        value = inputs.get(name)
+        if type(value) is not float or not LEAST < value < MOST:
+            if type(value) is _ARRAY[0]:
+                return None
+            if type(value) is not float or not is_good(name, value):
+                value = as_number(name, value, call.inputs, call.asked.shown)
+                if value is None:
+                    return None
+        numbers.append(value)
+    return numbers
+
+
+def prepared(
     names: tuple[str, ...],
     inputs: Mapping[str, Any],
     branch: Any,
     accuracy: Any,
     loads: "Mapping[str, Load]" = NO_LOADS,
-) -> "CheckedRequest":
-    """The request of names, checked when it is new; the way of every call to a kernel begins here."""
+) -> PreparedCall:
+    """The request of names, checked when it is new: every call of a kernel begins here."""
     if type(accuracy) is not str or accuracy != "standard":
         accuracy = accuracy_of(accuracy)
-    present = tuple([name for name, value in inputs.items() if value is not None])
-    now = register()
-    key: tuple[Any, ...] = names, present, is_steady(inputs.get("alpha")), branch, accuracy, now
+    present, alpha, now = (
+        tuple([n for n, v in inputs.items() if v is not None]),
+        inputs.get("alpha"),
+        register(),
+    )
+    steady = alpha is None or (type(alpha) is float and alpha == 0.0)
+    key: tuple[Any, ...] = names, present, steady, branch, accuracy, now
     if loads:
         key += tuple([(name, load.variant) for name, load in loads.items()])
-    call = _KNOWN.get(key)
-    if call is None:
+    result = _KNOWN.get(key)
+    if result is None:
+        if loads:
+            call = Call(*_request_under()(names, inputs, loads, branch, accuracy, now))
+        else:
+            asked = request(names, inputs, branch, accuracy, now)
+            call = Call(asked, asked.inputs)
         if len(_KNOWN) > MOST_KNOWN:
             _KNOWN.clear()
-        call = _KNOWN[key] = CheckedRequest(names, inputs, loads, branch, accuracy, now)
-    return call
-
-
-class CheckedRequest:
-    """A request that is checked and remembered, with its function of a point.
-
-    asked    the request
-    inputs   those that are numbers or arrays of the caller
-    loaded   those that follow from the loads that matter
-    keys     the kernels of arrays so far, by what they go by
-    """
-
-    def __init__(
-        self,
-        names: tuple[str, ...],
-        given: Mapping[str, Any],
-        loads: "Mapping[str, Load]",
-        branch: int,
-        accuracy: str,
-        known: Register,
-    ) -> None:
-        self.loaded: LoadInputs | None = None
-        if loads:
-            with IMPORTS:
-                from .under_loads.request import request_of
-
-            self.asked, self.inputs, self.loaded = request_of(names, given, loads, branch, accuracy, known)
-        else:
-            self.asked = request(names, given, branch, accuracy, known)
-        asked = self.asked
-        self.point = point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
-        if self.loaded is None:
-            self.inputs = self.point.inputs
-        self.keys: dict[Any, Any] = {}
-
-    def answer(
-        self,
-        given: Mapping[str, Any],
-        threads: int | None,
-        out: Any,
-        loads: "Mapping[str, Load]" = NO_LOADS,
-    ) -> Any:
-        """The values: a tuple at a point, a dict by name over arrays."""
-        numbers = []
-        for name in self.inputs:
-            value = given.get(name)
-            if type(value) is not float or not LEAST < value < MOST:
-                if type(value) is _ARRAY[0]:
-                    value = None
-                elif type(value) is not float or not is_good(name, value):
-                    value = as_number(name, value, self.inputs, self.asked.shown)
-                if value is None:  # not a number: an array
-                    return self._of_arrays(given, threads, out, self.of_loads(loads))
-            numbers.append(value)
-        if out is not None:
-            raise TypeError("out= is for arrays, but every input is a number")
-        own = self.of_loads(loads)
-        if own is None:
-            return self.point.function(*numbers)
-        return self.point.run(own.at_point(dict(zip(self.inputs, numbers, strict=True))))
-
-    def of_loads(self, loads: "Mapping[str, Load]") -> "LoadInputs | None":
-        """The inputs that follow from these loads, of the kind of those that were checked."""
-        known = self.loaded
-        return None if known is None else known._replace(loads={name: loads[name] for name in known.loads})
-
-    def _of_arrays(
-        self, given: Mapping[str, Any], threads: int | None, out: Any, loads: "LoadInputs | None"
-    ) -> dict[str, Any]:
-        """The values for arrays: labelled ones broadcast by their dimensions, others by position."""
-        evaluate_arrays = _evaluate_arrays()
-        names = self.asked.shown
-        for name in self.inputs:
-            value = given.get(name)
-            if type(value) is float or type(value) is _ARRAY[0]:
-                continue
-            if type(value) is str:
-                given = {**given, name: as_number(name, value, self.inputs, names)}
-            elif out is None and bool(getattr(value, "dims", None)) and hasattr(value, "coords"):
-                with IMPORTS:
-                    from .labelled import evaluate_labelled
-
-                def run(plain: dict[str, Any]) -> dict[str, Any]:
-                    return self._of_arrays(plain, threads, None, loads)
-
-                return evaluate_labelled(run, names, {name: given.get(name) for name in self.inputs})
-        result: dict[str, Any] = evaluate_arrays(
-            self.asked, self.inputs, given, threads, out, loads, self.keys
-        )
+        result = _KNOWN[key] = PreparedCall(call, point_of(*call.asked.key), {})
+    own = result.call.loads
+    if own is None:
         return result
+    here = own._replace(loads={name: loads[name] for name in own.loads})
+    return result._replace(call=result.call._replace(loads=here))
 
 
-_KNOWN: dict[Any, CheckedRequest] = {}
+_KNOWN: dict[Any, PreparedCall] = {}
 _ARRAY: list[type] = [object]  # NumPy's type of array, when it is known
 
 
@@ -182,3 +149,12 @@ def _split() -> Any:
         from ..loads.resolve import split
 
     return split
+
+
+@cache
+def _request_under() -> Any:
+    """`under_loads.request_under`, imported when the first load comes."""
+    with IMPORTS:
+        from .under_loads import request_under
+
+    return request_under

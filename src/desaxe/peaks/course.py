@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.under_loads.arcs import Arcs, arcs_of, meeting_in_turn
+from ..evaluation.arcs import Arcs, arcs_of, meeting_in_turn
 from ..loads.along_motion import SPEEDS, OfMotion, members_of, speeds_of
 from ..loads.angles import meeting_and_bent
 from ..loads.load import Load, OverTheta, OverY

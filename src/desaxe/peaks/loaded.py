@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.arrays import evaluate_arrays
-from ..evaluation.under_loads.request import MOTION, LoadInputs, plan_for, under_loads
+from ..evaluation.under_loads import MOTION, LoadInputs, plan_for, totals_under
+from ..evaluation.values import Call
 from ..loads.along_motion import SPEEDS, STENCIL, STEP, OfMotion
 from ..loads.function import FunctionOverTheta
 from ..loads.load import Load, OverTheta, OverY
@@ -76,7 +77,7 @@ class ValuesUnderLoads:
         given = {name: column[rows] for name, column in columns.items() if name in (*LENGTHS, *SPEEDS)}
         given = dict(zip((*given, "theta"), np.broadcast_arrays(*given.values(), theta), strict=True))
         flat = {name: np.where(np.isnan(x), 1.0, x).reshape(-1) for name, x in given.items()}
-        known = evaluate_arrays(motion, motion.inputs, flat, 1, None)
+        known = evaluate_arrays(Call(motion, motion.inputs), flat, 1)
         of_motion = [n for n in needed if n not in columns and n != "theta"]
         loads = {n: a for n, a in self.designs.loads.items() if isinstance(a, OfMotion)}
         result = LoadInputs(loads, tuple(of_motion), motion).at(flat, known)
@@ -116,7 +117,7 @@ def search_under(search: Search, names: Sequence[str], designs: SearchedDesigns)
             f"peak of {name}: it has the slope of {' and '.join(plan.loads)}, whose second one its own slope "
             f'would need; grid("{name}", reduce={{"theta": "absmax"}}, ...) takes the largest of samples'
         )
-    asked, _, own_inputs = under_loads(plan, inputs, designs.branch, "standard")
+    asked, _, own_inputs = totals_under(plan, inputs, designs.branch, "standard")
     under = asked.form.under
     assert under is not None
     assert own_inputs is not None

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape
-from ..evaluation.under_loads.loaded import loads_of
+from ..evaluation.labelled import loads_of
 from ..loads.load import LoadWarning
 from ..loads.resolve import VARIABLE
 from ..mechanism.closed import TURN

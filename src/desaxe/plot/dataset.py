@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..evaluation.arcs import arcs_of
 from ..evaluation.evaluate import evaluate
 from ..evaluation.labels import attributes, import_xarray, known_loads, labelled, with_loads
-from ..evaluation.under_loads.arcs import arcs_of
 from ..loads.along_motion import members_of
 from ..loads.load import Load, OverTheta, OverY
 from ..loads.resolve import split

@@ -48,6 +48,11 @@ class Request(NamedTuple):
         """The inputs that it needs."""
         return _inputs(self.names, self.form, self.fixed)
 
+    @property
+    def key(self) -> tuple[tuple[str, ...], Variant, tuple[tuple[str, float], ...], str]:
+        """What its Program goes by."""
+        return self[1:]
+
 
 @lru_cache(maxsize=1024)
 def _inputs(names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...]) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from ..evaluation.under_loads.loaded import with_labelled
+from ..evaluation.labelled import with_labelled
 from ..loads.motors import Motor
 from ..mechanism.inputs import TINY
 from ..runtime.request import check_common, check_sliders, with_known_inputs

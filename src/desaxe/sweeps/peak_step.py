@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.labels import Output, attributes, side_attributes
-from ..evaluation.points import Outer, Step
+from ..evaluation.points import Outer, Step, outer_arrays
 from ..loads.angles import cycle
 from ..mechanism.names import sensitivity
 from ..mechanism.own import Definition, using
@@ -38,10 +38,16 @@ class PeakStep(Step):
     Its variables are `peak_absmax_a_C`, `peak_absmax_a_C_theta`, ..., `peak_absmax_a_C_wrt_ec`.
     """
 
+    along: tuple[tuple[str, str], ...]
     sought: Sought
     search: Search
     scalars: tuple[tuple[str, float], ...]  # the inputs that are no dimensions
     state: bool
+
+    @property
+    def columns(self) -> dict[str, str]:
+        """The inputs that have a dimension."""
+        return dict(self.along)
 
     @property
     def quantity(self) -> str:
@@ -71,9 +77,9 @@ class PeakStep(Step):
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The variables of a block, from the values along each of its dimensions."""
-        grids = np.meshgrid(*(np.asarray(values[name], np.float64) for name in self.dims), indexing="ij")
-        shape = tuple(values[name].size for name in self.dims)
-        columns = {name: grid.reshape(-1) for name, grid in zip(self.dims, grids, strict=True)}
+        arrays = outer_arrays(values, self.columns, self.dims)
+        shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
+        columns = {n: np.broadcast_to(a, shape).reshape(-1) for n, a in arrays.items()}
         columns |= {name: np.full(prod(shape), value) for name, value in self.scalars}
         with using(self.own):
             peaks = peaks_of_designs(self.sought._replace(threads=threads or 1), self.search, columns)
@@ -150,8 +156,11 @@ def _peak_step(one: PeakRequest, outer: Outer, branch: int, accuracy: Any) -> Pe
     for name in needs:
         if name not in outer.axes:
             raise TypeError(f"peak of {one.name}: {name} is missing (needed: {', '.join(sought.plan.needs)})")
-    dims = tuple(name for name in outer.dimensions if name in needs)
-    scalars = {name: float(outer.axes[name].reshape(-1)[0]) for name in needs if name not in dims}
+    along = {name: dim for name, dim in outer.along.items() if name in needs}
+    scalars = {name: float(outer.axes[name].reshape(-1)[0]) for name in needs if name not in along}
     varying = {name: np.array(scalars[name]) if name in scalars else np.zeros(2) for name in needs}
     search = search_of(sought.plan, varying, sought.ends)  # an input of 0 is folded where it is a number
-    return PeakStep(dims, sought, search, tuple(scalars.items()), outer.given.get("omega") is not None)
+    state = outer.given.get("omega") is not None
+    return PeakStep(
+        tuple(outer.of(needs)), tuple(along.items()), sought, search, tuple(scalars.items()), state
+    )

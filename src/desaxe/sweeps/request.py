@@ -79,8 +79,8 @@ def sweep_of(request: SweepRequest) -> Sweep:
     if request.reduce is not None:
         names = ((names,) if isinstance(names, str) else several(names)) + names_reduced(request.reduce)
     outer = outer_of(names, request.inputs, branch, request.threads, always=request.reduce is None)
-    for name in outer.dimensions:
-        if not outer.axes[name].size:
+    for name, size in outer.sizes.items():
+        if not size:
             raise ValueError(f"{name}: a sweep needs at least one value of it")
     checked = accuracy_of(accuracy)
     reductions = (
@@ -108,7 +108,7 @@ def _plan_of(
     if outer.names:
         plan = plan_of(outer, branch, accuracy, reductions)
     else:
-        designs = tuple(name for name in outer.dimensions if name != "theta")
+        designs = tuple(outer.of([name for name in outer.axes if name != "theta"]))
         plan = Plan(outer, branch, accuracy, (), designs)
     margin = () if outer.names and reductions is None else margin_of(outer, branch, accuracy, plan.dims)
     return plan._replace(beside=(*margin, *peaks))
@@ -137,6 +137,7 @@ def identity(plan: Plan, accuracy: str, peaks: Sequence[PeakRequest] = ()) -> di
         "branch": int(plan.branch),
         "accuracy": accuracy,
         **{name: _input(array) for name, array in outer.axes.items()},
+        **{f"dimension of {name}": dim for name, dim in outer.along.items() if dim != name},
         **{name: f"{load.told()} ({load.identity})" for name, load in outer.loads.items()},
     }
     return {"request": json.dumps(request), "version": desaxe_version(), "digest": digest()}

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...evaluation.under_loads.loaded import loads_of
+from ...evaluation.labelled import loads_of
 from ...loads.along_motion import with_derivatives
 from ...mechanism.catalogue import has, inputs_of, quantity
 from ...mechanism.keywords import with_known_keywords

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ...evaluation.arrays import are_good, as_array, broadcast_shape
 from ...evaluation.evaluate import evaluate
-from ...evaluation.under_loads.loaded import loads_of
+from ...evaluation.labelled import loads_of
 from ...loads.along_motion import members_of, speeds_of, with_derivatives
 from ...loads.angles import crossings, meeting_angles, shift
 from ...loads.load import Load, OverY

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...evaluation.under_loads.loaded import loads_of
+from ...evaluation.labelled import loads_of
 from ...loads.angles import turns_of
 from ...loads.resolve import VARIABLE
 from ...mechanism.inputs import INPUTS

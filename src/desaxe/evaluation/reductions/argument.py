@@ -244,7 +244,7 @@ def _is_kind(text: str) -> bool:
 def _at(axes: tuple[str, ...], place: Any, name: str) -> At:
     if len(axes) > 1:
         raise ValueError(f"reduce: ('at', {shown(place)}, {name!r}) goes along one axis, not {_text(axes)}")
-    number = as_number(axes[0], place, axes, ("at",))
+    number = as_number(axes[0], place, axes, ("at",)) if axes[0] in INPUTS else None
     if number is None:
         raise TypeError(f"reduce: at = {shown(place)}: expected one value of {axes[0]}")
     return At(number, name, place if isinstance(place, str) else f"{number:g}")

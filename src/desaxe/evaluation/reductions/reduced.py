@@ -22,12 +22,13 @@ from ...loads.table import SAME
 from ...mechanism.catalogue import quantity
 from ...mechanism.closed import TURN
 from ...mechanism.closed.angles import dead_centres
+from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
 from ...mechanism.own import Definition
 from ...runtime.threads import run_parts
 from ..chunks import Slices, blocks_of, chunk_lengths, longest, slices_of
 from ..labels import Output, attributes, input_attributes, side_attributes
-from ..points import Outer, Points, Step, points_of
+from ..points import Outer, Points, Step, outer_arrays, points_of
 from .argument import At, Chain, Reductions, chain_name, extremes_at_end
 from .kinds import Field, combined, field_of, folded, kind_of
 from .own_measure import OwnMeasure
@@ -60,6 +61,11 @@ class Reduced(Step):
         return self.of.dims
 
     @property
+    def columns(self) -> dict[str, str]:
+        """The inputs of the values, and the axes of which the result has a position."""
+        return {**self.of.columns, **{axis: axis for axis in self.reductions.axes}}
+
+    @property
     def own(self) -> tuple[Definition, ...]:
         """The definitions that it needs."""
         return self.of.own
@@ -85,11 +91,12 @@ class Reduced(Step):
         """The result of a chain, where it is, and on which side of a jump."""
         variable = chain_name(name, chain)
         method = " ".join(": ".join((*axes, kind_of(kind).method)) for axes, kind in chain)
-        about = attributes(name, self.of.wanted.form.state)
+        about = attributes(name, self.of.call.asked.form.state)
         result = {variable: Output(FLOAT, {**about, "quantity": name, "cell_methods": method})}
         for axis in extremes_at_end(chain):
             place = input_attributes(axis)
-            words = f"{place['long_name']} of the {variable.removeprefix(f'{name}_')} of {name}"
+            what = place["long_name"] if axis in INPUTS else f"position along {axis}"
+            words = f"{what} of the {variable.removeprefix(f'{name}_')} of {name}"
             result[f"{variable}_{axis}"] = Output(FLOAT, {**place, "long_name": words, "quantity": axis})
         if self._has_side(chain):
             result[f"{variable}_side"] = Output(np.dtype(np.int8), side_attributes())
@@ -97,7 +104,7 @@ class Reduced(Step):
 
     def _has_side(self, chain: Chain) -> bool:
         """True if the result of a chain is a sample over theta under loads that may jump."""
-        return self.of.loads is not None and "theta" in extremes_at_end(chain)
+        return self.of.call.loads is not None and "theta" in extremes_at_end(chain)
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The outputs of a block by name, from the values along each of its `axes`."""
@@ -128,13 +135,15 @@ class Reduced(Step):
         first = reductions.stages[0].axes if combines else reductions.axes
         rest = tuple(name for name in dims if name not in first)
         taken = {key: [name for name in dims if name in first and name in key[1][0]] for key in keys}
-        sizes = {name: values[name].size for name in dims}
+        columns = self.columns
+        sizes = {dim: values[name].size for name, dim in columns.items()}
+        sizes = {dim: sizes[dim] for dim in dims}
         regions = [*self._regions(sizes, rest, combines)]
         parts: list[Fields] = [{}] * len(regions)
 
         def part(start: int, stop: int) -> None:
             for k in range(start, stop):
-                block = {**values, **{name: values[name][one] for name, one in regions[k].items()}}
+                block = {name: values[name][regions[k][dim]] for name, dim in columns.items()}
                 fields = {n: field_of(dims, a) for n, a in self.of.compute(block, 1).items()}
                 parts[k] = {
                     key: folded(fields[key[0]], axes, key[1][1], block) for key, axes in taken.items()
@@ -165,12 +174,16 @@ class Reduced(Step):
 
     def _side(self, name: str, field: Field, values: Mapping[str, Array]) -> Array:
         """The sides of jumps on which extremes over theta are; 0 where other inputs were averaged."""
-        shape = field.values.shape
-        grids = np.meshgrid(*(values[axis] for axis in self.dims), indexing="ij")
-        points = dict(zip(self.dims, grids, strict=True)) | dict(field.places)
-        flat = {axis: np.ascontiguousarray(column).reshape(-1) for axis, column in points.items()}
-        if not set(self.axes) <= set(flat):
+        shape, along = field.values.shape, self.of.columns
+        left = {n: dim for n, dim in along.items() if dim in self.dims}
+        points = dict(outer_arrays(values, left, self.dims))
+        for n, dim in along.items():
+            if dim in field.places:
+                at = field.places[dim]
+                points[n] = at if n == dim else values[n][np.nan_to_num(at).astype(np.intp)]
+        if points.keys() != along.keys():
             return np.zeros(shape, np.int8)
+        flat = {n: np.broadcast_to(column, shape).reshape(-1) for n, column in points.items()}
         return _sides_of(name, self.of, flat).reshape(shape)
 
 
@@ -195,8 +208,10 @@ def _sides_of(name: str, source: Points, points: Mapping[str, Array]) -> NDArray
     size = points["theta"].size
     points = {**{n: np.full(size, value) for n, value in source.numbers}, **points}
     side = np.zeros(size, np.int8)
-    loads = members_of(() if source.loads is None else source.loads.loads.values())
-    near = np.logical_or.reduce([_near(load, points, source.branch) for load in loads])
+    call = source.call
+    loads = members_of(() if call.loads is None else call.loads.loads.values())
+    branch = int(dict(call.asked.fixed)["branch"])
+    near = np.logical_or.reduce([_near(load, points, branch) for load in loads])
     rows = np.flatnonzero(near)
     if rows.size:
         some = {n: column[rows] for n, column in points.items()}
@@ -249,6 +264,11 @@ class AtPlace(Step):
     of: Points
 
     @property
+    def columns(self) -> dict[str, str]:
+        """The inputs of the values, but for the one that has its place."""
+        return {name: dim for name, dim in self.of.columns.items() if name != self.axis}
+
+    @property
     def identity(self) -> str:
         """A text that tells the step from all others, by what its loads are too."""
         return f"{self!r} {self.of.identity}"
@@ -256,7 +276,7 @@ class AtPlace(Step):
     @property
     def outputs(self) -> dict[str, Output]:
         """The output: its type and CF attributes."""
-        name, state = self.at.name, self.of.wanted.form.state
+        name, state = self.at.name, self.of.call.asked.form.state
         words = f"{quantity(name, state).meaning} at {self.axis} = {self.at.text}"
         about = {**attributes(name, state), "long_name": words, "quantity": name}
         return {self.at.variable: Output(FLOAT, about)}
@@ -272,8 +292,14 @@ class OfDesign(Step):
     """A user's function of the design, with its derivatives by some parameters."""
 
     function: OwnMeasure
+    along: tuple[tuple[str, str], ...]
     numbers: tuple[tuple[str, float], ...]
     slopes: tuple[str, ...]
+
+    @property
+    def columns(self) -> dict[str, str]:
+        """The parameters that have a dimension."""
+        return dict(self.along)
 
     @property
     def outputs(self) -> dict[str, Output]:
@@ -285,9 +311,9 @@ class OfDesign(Step):
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The outputs of a block by name, from the values along each of its dimensions."""
-        grids = np.meshgrid(*(values[name] for name in self.dims), indexing="ij")
-        shape = tuple(values[name].size for name in self.dims)
-        value, gradient = self.function({**dict(self.numbers), **dict(zip(self.dims, grids, strict=True))})
+        columns = outer_arrays(values, self.columns, self.dims)
+        value, gradient = self.function({**dict(self.numbers), **columns})
+        shape = np.broadcast_shapes(*(array.shape for array in columns.values()))
         arrays = [value, *(gradient.get(p, 0.0) for p in self.slopes)]
         return {n: np.array(np.broadcast_to(a, shape)) for n, a in zip(self.outputs, arrays, strict=True)}
 
@@ -298,7 +324,7 @@ def reduced_of(outer: Outer, branch: int, accuracy: Any, reductions: Reductions)
     names = tuple(name for name in outer.names if reductions.chains(name))
     steps: list[Step] = []
     if names:
-        last = "theta", *sorted(outer.axes, key=lambda name: -outer.axes[name].size)
+        last = "theta", *sorted(outer.sizes, key=lambda dim: -outer.sizes[dim])
         stage, *_ = reductions.stages
         along = next(name for name in last if name in stage.axes)
         first = *(name for name in stage.axes if name != along), along
@@ -307,9 +333,15 @@ def reduced_of(outer: Outer, branch: int, accuracy: Any, reductions: Reductions)
         steps.append(Reduced(dims, names, reductions, of))
     for one in reductions.at:
         axis = reductions.axes[0]
+        if [n for n, dim in outer.along.items() if dim == axis] != [axis]:
+            raise ValueError(
+                f"reduce: ('at', {one.text}, {one.name!r}) goes along one input, {axis} is shared"
+            )
         there = outer._replace(axes={**outer.axes, axis: np.array([one.place])})
         steps.append(AtPlace(dims, axis, one, points_of((one.name,), there, (*dims, axis), branch, accuracy)))
+    columns = {name: dim for name, dim in outer.along.items() if dim in dims}
     numbers = tuple((name, float(array)) for name, array in outer.axes.items() if not array.ndim)
-    first_design = {**dict(numbers), **{n: outer.axes[n][:1] for n in dims}}
-    steps += [OfDesign(dims, one, numbers, tuple(one(first_design)[1])) for one in reductions.functions]
+    design = {**dict(numbers), **{n: outer.axes[n][:1] for n in columns}}
+    for own in reductions.functions:
+        steps.append(OfDesign(dims, own, tuple(columns.items()), numbers, tuple(own(design)[1])))  # noqa: PERF401
     return tuple(steps)

@@ -178,7 +178,7 @@ def _grid(content: Content) -> dict[str, Any]:
     loops = [*_loops(of, sizes)]
     straight = sum(loop["operations"] for loop in loops if not loop["close"])
     total = sum(loop["runs"] * loop["operations"] for loop in loops if not loop["close"])
-    loads = {} if of.loads is None else of.loads.loads
+    loads = {} if of.call.loads is None else of.call.loads.loads
     angles = plan.outer.axes.get("theta", np.zeros(1))
     threads = max(1, min(content.threads or available(), points // LEAST_BLOCK, *[*sizes.values()][:1]))
     result = plan._replace(steps=plan.steps[: None if taken else 1]).bytes
@@ -186,8 +186,8 @@ def _grid(content: Content) -> dict[str, Any]:
     return {
         "points": points,
         "axes": [{"name": n, "size": s} for n, s in sizes.items()],
-        "steps": [*_steps(key, of.wanted, straight)],
-        "skipped": [*_skipped(key, of.wanted, [name for name in content.inputs if name not in loads])],
+        "steps": [*_steps(key, of.call.asked, straight)],
+        "skipped": [*_skipped(key, of.call.asked, [name for name in content.inputs if name not in loads])],
         "loops": loops,
         "operations": {"straight": straight, "per_point": total / points, "total": total},
         "reduction": taken and {"axis": ", ".join(taken.axes), "kinds": taken.kinds},

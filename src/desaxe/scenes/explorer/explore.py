@@ -6,7 +6,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ...evaluation.under_loads.loaded import loads_of
+from ...evaluation.labelled import loads_of
 from ...mechanism.inputs import INPUTS
 from ...mechanism.keywords import check_inputs, with_known_keywords
 from ...mechanism.names import LOADS

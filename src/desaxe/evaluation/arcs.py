@@ -11,13 +11,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...loads.angles import crossings
-from ...loads.load import OverY, ahead
-from ...loads.resolve import way_of
-from ...loads.table import SAME
-from ...mechanism.closed.angles import dead_centres, limit_angles, repeated
-from ...mechanism.names import LENGTHS
-from ..values import values
+from ..loads.angles import crossings
+from ..loads.load import OverY, ahead
+from ..loads.resolve import way_of
+from ..loads.table import SAME
+from ..mechanism.closed.angles import dead_centres, limit_angles, repeated
+from ..mechanism.names import LENGTHS
+from .values import values
 
 Array = NDArray[np.float64]
 BESIDE = 1e-6  # rad: more than what is rounded of an angle next to a dead centre

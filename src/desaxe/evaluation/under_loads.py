@@ -8,18 +8,19 @@ from collections.abc import Container, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from ...loads.along_motion import SPEEDS, OfMotion
-from ...loads.function import naming
-from ...loads.lines import lines_of, tables_of, totals_of
-from ...loads.load import Load, OverTheta, TableOverTheta, ahead
-from ...loads.resolve import LoadPlan, plan_of, split, way_of
-from ...mechanism.load_lines import LoadLines, TurningSense, Under
-from ...mechanism.names import LENGTHS, STATUS
-from ...mechanism.own import Register
-from ...runtime.point import point_of
-from ...runtime.request import Request, request
-from ...support.lazy import np
+from ..loads.along_motion import SPEEDS, OfMotion
+from ..loads.function import naming
+from ..loads.lines import lines_of, tables_of, totals_of
+from ..loads.load import Load, OverTheta, TableOverTheta, ahead
+from ..loads.resolve import LoadPlan, plan_of, split, way_of
+from ..mechanism.load_lines import LoadLines, TurningSense, Under
+from ..mechanism.names import LENGTHS, STATUS
+from ..mechanism.own import Register
+from ..runtime.point import point_of
+from ..runtime.request import Request, request
+from ..support.lazy import np
 
+UnderLoads = tuple[Request, tuple[str, ...], "LoadInputs | None"]  # a request, its caller's inputs, others
 MOTION = ("theta", *LENGTHS, "omega0", "alpha", "omega")  # inputs that every request has, if only as None
 
 
@@ -39,9 +40,7 @@ class LoadInputs(NamedTuple):
         """All inputs at a point, from those of the caller; tables are lists, which need no NumPy."""
         motion: Mapping[str, float] = {}
         if self.motion is not None:
-            point = point_of(self.motion.names, self.motion.form, self.motion.fixed, self.motion.accuracy)
-            known = point.function(*(numbers[name] for name in point.inputs))
-            motion = dict(zip(self.motion.shown, known, strict=True))
+            motion = dict(zip(self.motion.shown, point_of(*self.motion.key).run(numbers), strict=True))
         return {**numbers, **self.tables(arrays=False), **self.at(numbers, motion)}
 
     def tables(self, arrays: bool = True) -> dict[str, Any]:
@@ -83,34 +82,26 @@ class LoadInputs(NamedTuple):
         return {name: _finite_or_zero(value), **{by_name + p: load.total(by, p, motion) for p in needed}}
 
 
-class LoadedRequest(NamedTuple):
-    """A request under loads, its inputs that come from the caller, and those that follow from the loads."""
-
-    asked: Request
-    inputs: tuple[str, ...]
-    loads: LoadInputs | None
-
-
-def request_of(
+def request_under(
     names: Sequence[str],
     numbers: Mapping[str, Any],
     loads: Mapping[str, Load],
     branch: int,
     accuracy: Any,
     known: Register | None = None,
-) -> LoadedRequest:
+) -> UnderLoads:
     """The request of names from inputs that are present, and from loads; TypeError without an angle.
 
     known   the definitions that names have; those of this process at this moment without
     """
-    plan = plan_at(names, loads, {n for n, value in numbers.items() if value is not None}) if loads else None
-    if plan is None or not plan.loads:
+    plan = plan_at(names, loads, {n for n, value in numbers.items() if value is not None})
+    if not plan.loads:
         asked = request(names, numbers, branch, accuracy, known)
-        return LoadedRequest(asked, asked.inputs, None)
+        return asked, asked.inputs, None
     if numbers.get("theta") is None:
         varying = " and ".join(plan.loads)
         raise TypeError(f"{', '.join(plan.shown)}: theta, over which {varying} varies, is missing")
-    return under_loads(plan, numbers, branch, accuracy, known)
+    return totals_under(plan, numbers, branch, accuracy, known)
 
 
 def plan_at(names: Sequence[str], loads: Mapping[str, Load], inputs: Container[str]) -> LoadPlan:
@@ -126,31 +117,30 @@ def plan_for(names: Sequence[str], inputs: Mapping[str, Any]) -> tuple[dict[str,
     return numbers, plan_at(names, loads, numbers)
 
 
-def under_loads(
-    plan: LoadPlan, given: Mapping[str, Any], branch: int, accuracy: Any, known: Register | None = None
-) -> LoadedRequest:
+def totals_under(
+    plan: LoadPlan, inputs: Mapping[str, Any], branch: int, accuracy: Any, known: Register | None = None
+) -> UnderLoads:
     """The request of a plan's totals."""
     every = tuple(dict.fromkeys((*plan.names, *plan.motion)))
-    asked = request(every, {**given, **dict.fromkeys(plan.loads, 1.0)}, branch, accuracy, known)
+    asked = request(every, {**inputs, **dict.fromkeys(plan.loads, 1.0)}, branch, accuracy, known)
     names = dict(zip(asked.shown, asked.names, strict=True))
     lines = tuple(_lines(name, load) for name, load in plan.loads.items())
-    under = Under(tuple(names.items()), lines, totals_of(plan), _sense(given))
+    under = Under(tuple(names.items()), lines, totals_of(plan), _sense(inputs))
     own = tuple(names[name] for name in plan.shown)
-    asked = Request(plan.shown, own, asked.form._replace(under=under), asked.fixed, asked.accuracy)
-    terms = [term for group in plan.terms.values() for term in group]
-    by = {f"{term.force}_by_{term.parameter}" for term in terms}
+    asked = asked._replace(shown=plan.shown, names=own, form=asked.form._replace(under=under))
+    by = {f"{term.force}_by_{term.parameter}" for group in plan.terms.values() for term in group}
     motion = None
     if plan.of_motion:
-        needed = {n: given.get(n) for n in (*LENGTHS, *SPEEDS) if n in LENGTHS or plan.follows_speed}
-        at = {**dict.fromkeys(MOTION), **needed, "theta": 1.0}
+        needed = (*LENGTHS, *SPEEDS) if plan.follows_speed else LENGTHS
+        at = {**dict.fromkeys(MOTION), **{name: inputs.get(name) for name in needed}, "theta": 1.0}
         motion = request(plan.of_motion, at, branch, "standard", known)
     more = () if motion is None else motion.inputs
     forces = [*plan.loads, *(part for item in plan.loads.items() for part in tables_of(*item))]
     made = by | {f"{load}{end}" for load in forces for end in ("", "_first", "_period")}
     taken = {*asked.inputs, "theta", *more} - made
-    inputs = tuple(name for name in dict.fromkeys((*given, *asked.inputs, *more)) if name in taken)
+    own = tuple(name for name in dict.fromkeys((*inputs, *asked.inputs, *more)) if name in taken)
     functions = tuple(name for name in asked.inputs if name in by or name in plan.loads)
-    return LoadedRequest(asked, inputs, LoadInputs(plan.loads, functions, motion))
+    return asked, own, LoadInputs(plan.loads, functions, motion)
 
 
 def _lines(name: str, load: Load) -> LoadLines:
