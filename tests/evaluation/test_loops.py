@@ -38,7 +38,7 @@ def test_a_nest_has_the_values_of_one_loop(pattern, monkeypatch):
     monkeypatch.setattr(_axes, "NESTED", 0)
     arrays = {name: value for name, value in inputs.items() if np.size(value) > 1}
     shape = np.broadcast_shapes(*(value.shape for value in arrays.values()))
-    assert loops_over(arrays, shape).sizes == nest
+    assert loops_over(arrays, shape)[0] == nest
     nested = dx.evaluate(NAMES, **inputs)
     for name in NAMES:
         assert nested[name].shape == shape
@@ -74,12 +74,12 @@ def test_what_is_no_nest_is_one_loop(shapes, monkeypatch):
     monkeypatch.setattr(_axes, "NESTED", 0)
     arrays = {name: values(name, *shape) for name, shape in shapes.items()}
     shape = np.broadcast_shapes(*shapes.values())
-    loops = loops_over(arrays, shape)
-    assert loops.sizes == (math.prod(shape),)
-    for name, column in loops.columns.items():
+    sizes, columns, _ = loops_over(arrays, shape)
+    assert sizes == (math.prod(shape),)
+    for name, column in columns.items():
         assert np.array_equal(column.reshape(shape), np.broadcast_to(arrays[name], shape))
 
 
 def test_few_points_are_one_loop():
     arrays = {"theta": values("theta", 70), "ec": values("ec", 9, 1)}
-    assert loops_over(arrays, (9, 70)).sizes == (630,)
+    assert loops_over(arrays, (9, 70))[0] == (630,)

@@ -1,6 +1,7 @@
 """Values of quantities: at a point, over arrays, over a grid.
 
 evaluate       numbers in, a float out; arrays in, arrays out
+call           a checked request with its loads
 values         values of names from a dict of inputs: the checked request of every call, and its point
 under_loads    the request of names under loads that vary with the motion, and what follows from these
 arrays         inputs that broadcast, the loops they vary along, outputs and scratch

@@ -1,6 +1,6 @@
 """`evaluate` over arrays: broadcast the inputs, run in blocks, fill the outputs."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import prod
 from sys import float_info
 from typing import TYPE_CHECKING, Any
@@ -20,7 +20,7 @@ from ..support.memory import require
 from ..support.shown import shown
 
 if TYPE_CHECKING:
-    from .values import Call
+    from .call import Call
 
 Array = NDArray[Any]
 
@@ -150,18 +150,14 @@ def dtype_of(name: str) -> np.dtype[Any]:
     return STATUS if name == "status" else FLOAT
 
 
-def scratch_for(places: Mapping[str, Array], inputs: Collection[Array]) -> dict[str, Array]:
+def scratch_for(places: Mapping[str, Array], inputs: Iterable[Array]) -> dict[str, Array]:
     """Buffers for a kernel: the outputs where it can write into them, else new arrays to copy from."""
-    return {
-        name: _buffer_for(name, place, [*inputs, *(p for n, p in places.items() if n != name)])
-        for name, place in places.items()
-    }
-
-
-def _buffer_for(name: str, place: Array, others: Iterable[Array]) -> Array:
-    direct = place.flags.c_contiguous and place.flags.aligned and place.dtype == dtype_of(name)
-    overlaps = any(np.may_share_memory(place, array) for array in others)
-    return place if direct and not overlaps else np.empty(place.shape, dtype_of(name))
+    every, result = [*inputs, *places.values()], dict[str, Array]()
+    for name, place in places.items():
+        direct = place.flags.c_contiguous and place.flags.aligned and place.dtype == dtype_of(name)
+        shared = sum(np.may_share_memory(place, array) for array in every) > 1  # with more than itself
+        result[name] = place if direct and not shared else np.empty(place.shape, dtype_of(name))
+    return result
 
 
 def copied_back(places: dict[str, Array], buffers: Mapping[str, Array]) -> dict[str, Array]:

@@ -122,7 +122,8 @@ class Function:
             raise TypeError(f"function of ({', '.join(self.inputs)}): {len(args)} arguments were given")
         labelled = not PLAIN.issuperset(map(type, args)) and any(hasattr(value, "attrs") for value in args)
         if labelled:
-            args = tuple(map(_argument, self.inputs, args))
+            pairs = zip(self.inputs, args, strict=True)  # in SI units, from the unit that an array names
+            args = tuple([in_si(INPUTS[n], a) if hasattr(a, "attrs") else a for n, a in pairs])
         if out is not None:
             named["out"] = outs = self._outputs(out)
             args = tuple([_apart(argument, outs) for argument in args])
@@ -246,25 +247,10 @@ def _constant_like(values: Any, constant: Any) -> Any:
     return np.where(np.isnan(values), np.nan, constant)[()]
 
 
-def _may_share(array: NDArray[Any], out: Any) -> bool:
-    """True if an output may share memory with an array; two that own theirs do not, which is seen at once."""
-    if not isinstance(out, np.ndarray) or (array is not out and array.flags.owndata and out.flags.owndata):
-        return False
-    return bool(np.may_share_memory(array, out))
-
-
 def _apart(argument: Any, outs: Sequence[Any]) -> Any:
     """The argument, or a copy of it if it shares memory with an output."""
-    if isinstance(argument, np.ndarray):
-        for out in outs:
-            if _may_share(argument, out):
-                return argument.copy()
-    return argument
-
-
-def _argument(name: str, value: Any) -> Any:
-    """An argument in SI units, with its labels, from the unit that it names itself."""
-    return in_si(INPUTS[name], value) if hasattr(value, "attrs") else value
+    arrays = (out for out in outs if isinstance(out, np.ndarray) and isinstance(argument, np.ndarray))
+    return argument.copy() if any(np.may_share_memory(argument, out) for out in arrays) else argument
 
 
 def _array(name: str, value: Any) -> Any:

@@ -27,8 +27,9 @@ from ..runtime.kernels import KernelKey, key_of
 from ..runtime.request import as_number, check_common, several
 from ..support.forks import IMPORTS
 from .arrays import as_array, copied_back, dtype_of, evaluate_arrays, fill, outputs_for, scratch_for
+from .call import Call
 from .labels import Output, attributes
-from .values import Call, prepared
+from .values import prepared
 
 Array = NDArray[Any]
 ALWAYS = ("status", "margin")
@@ -154,9 +155,11 @@ class Step(ABC):
     """Base class of steps.
 
     dims   the dimensions of the outputs, in their order
+    along  what it needs the values of, and the dimension of each
     """
 
     dims: tuple[str, ...]
+    along: tuple[tuple[str, str], ...]
 
     @property
     def axes(self) -> tuple[str, ...]:
@@ -165,8 +168,8 @@ class Step(ABC):
 
     @property
     def columns(self) -> dict[str, str]:
-        """What it needs the values of, and the dimension of each."""
-        return {dim: dim for dim in self.axes}
+        """What it needs the values of -> the dimension of each."""
+        return dict(self.along)
 
     @property
     def own(self) -> tuple[Definition, ...]:
@@ -193,20 +196,13 @@ class Points(Step):
     """The values of names over some dimensions; without arrays, so that it pickles small.
 
     call     the request, with its loads
-    along    the inputs along each dimension
     numbers  the inputs that are numbers here
     key      the kernel of all blocks
     """
 
     call: Call
-    along: tuple[tuple[str, str], ...]
     numbers: tuple[tuple[str, float], ...]
     key: KernelKey
-
-    @property
-    def columns(self) -> dict[str, str]:
-        """The inputs that have a dimension."""
-        return dict(self.along)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -278,4 +274,4 @@ def points_of(names: Sequence[str], outer: Outer, dims: Sequence[str], branch: i
             axis_of |= dict.fromkeys(call.loads.functions, axis_of[first])
         axis_of = {name: axis for name, axis in axis_of.items() if name in call.asked.inputs}
     key = key_of(call.asked, numbers, columns, axis_of, axes, keys)
-    return Points(tuple(dims), call, tuple(along.items()), tuple(numbers.items()), key)
+    return Points(tuple(dims), tuple(along.items()), call, tuple(numbers.items()), key)

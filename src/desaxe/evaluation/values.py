@@ -11,29 +11,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..mechanism.inputs import SAFE, is_good
 from ..mechanism.own import register
 from ..runtime.point import PointFunction, point_of
-from ..runtime.request import Request, accuracy_of, as_number, check_common, request, several
+from ..runtime.request import accuracy_of, as_number, check_common, request, several
 from ..support.forks import IMPORTS, imported
+from .call import Call
 
 if TYPE_CHECKING:
     from ..loads.load import Load
-    from .under_loads import LoadInputs
 
 NO_LOADS: "Mapping[str, Load]" = MappingProxyType({})
 LEAST, MOST = SAFE
 MOST_KNOWN = 1024  # requests that are remembered
-
-
-class Call(NamedTuple):
-    """A checked request, under loads or not; it pickles.
-
-    asked   the request
-    inputs  those that are numbers or arrays of the caller
-    loads   the inputs that follow from loads which vary with the motion; derivatives are total ones then
-    """
-
-    asked: Request
-    inputs: tuple[str, ...]
-    loads: "LoadInputs | None" = None
 
 
 class PreparedCall(NamedTuple):
@@ -61,7 +48,10 @@ def values(
         check_common(inputs, branch, threads)
     loads = NO_LOADS
     if any(map(callable, inputs.values())):
-        inputs, loads = _split()({name: value for name, value in inputs.items() if value is not None})
+        with IMPORTS:
+            from ..loads.resolve import split
+
+        inputs, loads = split({name: value for name, value in inputs.items() if value is not None})
     call, point, keys = prepared(requested, inputs, branch, accuracy, loads)
     numbers = _numbers(call, inputs)
     if numbers is None:
@@ -114,7 +104,10 @@ def prepared(
     result = _KNOWN.get(key)
     if result is None:
         if loads:
-            call = Call(*_request_under()(names, inputs, loads, branch, accuracy, now))
+            with IMPORTS:
+                from .under_loads import request_under
+
+            call = Call(*request_under(names, inputs, loads, branch, accuracy, now))
         else:
             asked = request(names, inputs, branch, accuracy, now)
             call = Call(asked, asked.inputs)
@@ -140,21 +133,3 @@ def _evaluate_arrays() -> Any:
         from .arrays import evaluate_arrays
 
     return evaluate_arrays
-
-
-@cache
-def _split() -> Any:
-    """`loads.resolve.split`, imported when the first load comes."""
-    with IMPORTS:
-        from ..loads.resolve import split
-
-    return split
-
-
-@cache
-def _request_under() -> Any:
-    """`under_loads.request_under`, imported when the first load comes."""
-    with IMPORTS:
-        from .under_loads import request_under
-
-    return request_under

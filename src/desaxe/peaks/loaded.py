@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.arrays import evaluate_arrays
+from ..evaluation.call import Call
 from ..evaluation.under_loads import MOTION, LoadInputs, plan_for, totals_under
-from ..evaluation.values import Call
 from ..loads.along_motion import SPEEDS, STENCIL, STEP, OfMotion
 from ..loads.function import FunctionOverTheta
 from ..loads.load import Load, OverTheta, OverY

@@ -38,16 +38,10 @@ class PeakStep(Step):
     Its variables are `peak_absmax_a_C`, `peak_absmax_a_C_theta`, ..., `peak_absmax_a_C_wrt_ec`.
     """
 
-    along: tuple[tuple[str, str], ...]
     sought: Sought
     search: Search
     scalars: tuple[tuple[str, float], ...]  # the inputs that are no dimensions
     state: bool
-
-    @property
-    def columns(self) -> dict[str, str]:
-        """The inputs that have a dimension."""
-        return dict(self.along)
 
     @property
     def quantity(self) -> str:

@@ -23,7 +23,7 @@ from ...units.text import with_unit_of
 from .kinds import ALLOWED, kind_name, kind_of
 from .own_measure import OwnMeasure
 
-Chain = list[tuple[tuple[str, ...], str]]  # axes and what is taken of them, one after the other
+Chain = tuple[tuple[tuple[str, ...], str], ...]  # axes and what is taken of them, one after the other
 EVERY = ""  # stands for every name
 NO_STATUS = "a status has no largest or mean: leave it out; each name has a count of skipped points"
 EXAMPLE = '{"theta": "absmax"}'
@@ -36,20 +36,10 @@ class Reduction(NamedTuple):
     kinds: tuple[str, ...]
 
 
-class Stage(NamedTuple):
-    """Kinds along some axes at once, each of every name or of a single one: (kind, name)."""
-
-    axes: tuple[str, ...]
-    taken: tuple[tuple[str, str], ...]
-
-    def kinds_of(self, name: str) -> list[str]:
-        """The kinds that are taken of a name."""
-        return [*dict.fromkeys(kind for kind, of in self.taken if of in (EVERY, name))]
-
-
 class At(NamedTuple):
     """A name at one place of the reduced axis; `text` is how the place was given."""
 
+    axis: str
     place: float
     name: str
     text: str
@@ -61,53 +51,57 @@ class At(NamedTuple):
 
 
 class Reductions(NamedTuple):
-    """A request of `reduce=`: stages in their order, and where there is one stage measures beside it."""
+    """A request of `reduce=`.
 
-    stages: tuple[Stage, ...]
+    axes   all reduced axes
+    first  those that are reduced first
+    taken  names, each with a chain that is taken of it; beside these, measures along one axis
+    """
+
+    axes: tuple[str, ...]
+    first: tuple[str, ...]
+    taken: tuple[tuple[str, Chain], ...]
     at: tuple[At, ...] = ()
     functions: tuple[OwnMeasure, ...] = ()
 
     @property
-    def axes(self) -> tuple[str, ...]:
-        """All reduced axes."""
-        return tuple(axis for stage in self.stages for axis in stage.axes)
-
-    @property
     def kinds(self) -> tuple[str, ...]:
         """All kinds, in their order."""
-        return tuple(dict.fromkeys(kind for stage in self.stages for kind, _ in stage.taken))
+        return tuple(dict.fromkeys(kind for _, chain in self.taken for _, kind in chain))
 
     @property
     def alone(self) -> Reduction | None:
         """The request as kinds along one axis that exported modules have; None where it is more than that."""
-        more = self.at or self.functions or len(self.axes) > 1
-        more = more or any(of or not kind_of(kind).combines for kind, of in self.stages[0].taken)
-        return None if more else Reduction(self.axes[0], self.kinds)
+        names = dict.fromkeys(name for name, _ in self.taken)
+        partly = len(self.taken) < len(names) * len(self.kinds)
+        if partly or self.at or self.functions or len(self.axes) > 1:
+            return None
+        return Reduction(self.axes[0], self.kinds) if all(kind_of(k).combines for k in self.kinds) else None
 
-    def plain(self) -> dict[str, list[Any]]:
-        """The request in plain lists, which tell it from another."""
-        result: dict[str, list[Any]] = {
-            ", ".join(stage.axes): [[kind, of] if of else kind for kind, of in stage.taken]
-            for stage in self.stages
-        }
-        last = ", ".join(self.stages[-1].axes)
-        result[last] += [["at", one.place, one.name] for one in self.at]
-        result[last] += [function.name for function in self.functions]
-        return result
+    def plain(self) -> list[str]:
+        """The request in texts, which tell it from another."""
+        at = [f"{one.name} at {one.axis} = {one.place!r}" for one in self.at]
+        chains = [f"{name}: {_text(chain)}" for name, chain in self.taken]
+        return [*chains, *at, *(function.name for function in self.functions)]
 
     def chains(self, name: str) -> list[Chain]:
-        """Lists of (axes, kind) that are taken of a name; equal kinds in a row go along all axes at once."""
-        chains: list[Chain] = [[]]
-        for stage in self.stages:
-            kinds = stage.kinds_of(name)
-            chains = [_extended(chain, stage.axes, kind) for chain in chains for kind in kinds]
-        return chains
+        """Lists of (axes, kind) that are taken of a name."""
+        return [chain for of, chain in self.taken if of == name]
+
+
+def _chains(stages: Sequence[tuple[tuple[str, ...], Iterable[tuple[str, str]]]], name: str) -> list[Chain]:
+    """What stages take of a name, one after the other; equal kinds in a row go along all axes at once."""
+    chains: list[Chain] = [()]
+    for axes, taken in stages:
+        kinds = dict.fromkeys(kind for kind, of in taken if of in (EVERY, name))
+        chains = [_extended(chain, axes, kind) for chain in chains for kind in kinds]
+    return chains
 
 
 def _extended(chain: Chain, axes: tuple[str, ...], kind: str) -> Chain:
     if chain and chain[-1][1] == kind:
-        return [*chain[:-1], ((*chain[-1][0], *axes), kind)]
-    return [*chain, (axes, kind)]
+        return *chain[:-1], ((*chain[-1][0], *axes), kind)
+    return *chain, (axes, kind)
 
 
 def chain_name(name: str, chain: Chain) -> str:
@@ -130,11 +124,14 @@ def reductions_of(asked: Any, dimensions: Sequence[str], names: Sequence[str]) -
     """A request, checked; ValueError or TypeError that names what is wrong."""
     if isinstance(asked, Reductions):
         return asked
-    entries, stages = _entries(asked), list[Stage]()
+    entries = _entries(asked)
+    stages: list[tuple[tuple[str, ...], dict[tuple[str, str], None]]] = []
     at: dict[At, None] = {}
     functions: list[OwnMeasure] = []
+    used: list[str] = []
     for key, items in entries.items():
-        axes = _axes(key, dimensions, [axis for stage in stages for axis in stage.axes])
+        axes = _axes(key, dimensions, used)
+        used += axes
         taken: dict[tuple[str, str], None] = {}
         for one in _listed(key, items):
             measure = _measure(one)
@@ -151,8 +148,9 @@ def reductions_of(asked: Any, dimensions: Sequence[str], names: Sequence[str]) -
                 taken[kind_name(measure[0]), measure[1]] = None
         if not (taken or at or functions):
             raise ValueError(f"reduce: nothing is taken of {_text(axes)}; allowed: {ALLOWED}")
-        stages.append(Stage(axes, tuple(taken)))
-    result = Reductions(tuple(stages), tuple(at), tuple(functions))
+        stages.append((axes, taken))
+    every = tuple((name, chain) for name in names for chain in _chains(stages, name))
+    result = Reductions(tuple(used), stages[0][0], every, tuple(at), tuple(functions))
     _check_names(result, names)
     return result
 
@@ -247,7 +245,7 @@ def _at(axes: tuple[str, ...], place: Any, name: str) -> At:
     number = as_number(axes[0], place, axes, ("at",)) if axes[0] in INPUTS else None
     if number is None:
         raise TypeError(f"reduce: at = {shown(place)}: expected one value of {axes[0]}")
-    return At(number, name, place if isinstance(place, str) else f"{number:g}")
+    return At(axes[0], number, name, place if isinstance(place, str) else f"{number:g}")
 
 
 def _check_names(result: Reductions, names: Sequence[str]) -> None:
@@ -258,14 +256,16 @@ def _check_names(result: Reductions, names: Sequence[str]) -> None:
     for name in names:
         if "theta" in result.axes and of_design(name):
             raise ValueError(f"reduce: {name} is of the whole design: it has no course over theta")
-        chains = result.chains(name)
-        if not chains and name not in measured:
+        if not result.chains(name) and name not in measured:
             raise ValueError(f"reduce: nothing is taken of {name}; allowed: {ALLOWED}")
-        called += [chain_name(name, chain) for chain in chains]
+    called += [chain_name(name, chain) for name, chain in result.taken]
     twice = [name for name in called if called.count(name) > 1]
     if twice:
         raise ValueError(f"reduce: two results would be called {twice[0]}")
 
 
 def _text(axes: Any) -> str:
-    return axes if isinstance(axes, str) else ", ".join(map(str, axes))
+    """Axes in a message; of a chain, each with its kind."""
+    if isinstance(axes, str):
+        return axes
+    return ", ".join(one if isinstance(one, str) else f"{one[1]} along {_text(one[0])}" for one in axes)

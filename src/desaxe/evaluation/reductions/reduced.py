@@ -61,11 +61,6 @@ class Reduced(Step):
         return self.of.dims
 
     @property
-    def columns(self) -> dict[str, str]:
-        """The inputs of the values, and the axes of which the result has a position."""
-        return {**self.of.columns, **{axis: axis for axis in self.reductions.axes}}
-
-    @property
     def own(self) -> tuple[Definition, ...]:
         """The definitions that it needs."""
         return self.of.own
@@ -132,7 +127,7 @@ class Reduced(Step):
         dims, reductions = self.of.dims, self.reductions
         keys = dict.fromkeys((name, chain[0]) for name in self.names for chain in reductions.chains(name))
         combines = all(kind_of(kind).combines for _, (_, kind) in keys)
-        first = reductions.stages[0].axes if combines else reductions.axes
+        first = reductions.first if combines else reductions.axes
         rest = tuple(name for name in dims if name not in first)
         taken = {key: [name for name in dims if name in first and name in key[1][0]] for key in keys}
         columns = self.columns
@@ -256,35 +251,24 @@ def _near_nodes(nodes: Array, period: float, theta: Array) -> NDArray[np.bool_]:
 
 
 @dataclass(frozen=True)
-class AtPlace(Step):
-    """The values of a name at one place of an axis."""
+class AtPlace(Points):
+    """The values of a name at one place of an axis, which is a number there."""
 
-    axis: str
-    at: At
-    of: Points
-
-    @property
-    def columns(self) -> dict[str, str]:
-        """The inputs of the values, but for the one that has its place."""
-        return {name: dim for name, dim in self.of.columns.items() if name != self.axis}
-
-    @property
-    def identity(self) -> str:
-        """A text that tells the step from all others, by what its loads are too."""
-        return f"{self!r} {self.of.identity}"
+    place: At
 
     @property
     def outputs(self) -> dict[str, Output]:
         """The output: its type and CF attributes."""
-        name, state = self.at.name, self.of.call.asked.form.state
-        words = f"{quantity(name, state).meaning} at {self.axis} = {self.at.text}"
+        name, state = self.place.name, self.call.asked.form.state
+        words = f"{quantity(name, state).meaning} at {self.place.axis} = {self.place.text}"
         about = {**attributes(name, state), "long_name": words, "quantity": name}
-        return {self.at.variable: Output(FLOAT, about)}
+        return {self.place.variable: Output(FLOAT, about)}
 
-    def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
-        """The output of a block, from the values along each of its `axes`."""
-        columns = {**values, self.axis: np.array([self.at.place])}
-        return {self.at.variable: self.of.compute(columns, threads)[self.at.name][..., 0]}
+    def compute(
+        self, values: Mapping[str, Array], threads: int | None = 1, out: Any = None
+    ) -> dict[str, Array]:
+        """The output of a block, from the values of its `columns`."""
+        return {self.place.variable: super().compute(values, threads, out)[self.place.name]}
 
 
 @dataclass(frozen=True)
@@ -292,14 +276,8 @@ class OfDesign(Step):
     """A user's function of the design, with its derivatives by some parameters."""
 
     function: OwnMeasure
-    along: tuple[tuple[str, str], ...]
     numbers: tuple[tuple[str, float], ...]
     slopes: tuple[str, ...]
-
-    @property
-    def columns(self) -> dict[str, str]:
-        """The parameters that have a dimension."""
-        return dict(self.along)
 
     @property
     def outputs(self) -> dict[str, Output]:
@@ -325,23 +303,21 @@ def reduced_of(outer: Outer, branch: int, accuracy: Any, reductions: Reductions)
     steps: list[Step] = []
     if names:
         last = "theta", *sorted(outer.sizes, key=lambda dim: -outer.sizes[dim])
-        stage, *_ = reductions.stages
-        along = next(name for name in last if name in stage.axes)
-        first = *(name for name in stage.axes if name != along), along
-        later = (name for name in reductions.axes if name not in first)
+        end = next(dim for dim in last if dim in reductions.first)
+        first = *(dim for dim in reductions.first if dim != end), end
+        later = (dim for dim in reductions.axes if dim not in first)
         of = points_of(names, outer, (*dims, *later, *first), branch, accuracy)
-        steps.append(Reduced(dims, names, reductions, of))
+        columns = {**of.columns, **{axis: axis for axis in reductions.axes}}  # of extremes we say where
+        steps.append(Reduced(dims, tuple(columns.items()), names, reductions, of))
     for one in reductions.at:
-        axis = reductions.axes[0]
-        if [n for n, dim in outer.along.items() if dim == axis] != [axis]:
-            raise ValueError(
-                f"reduce: ('at', {one.text}, {one.name!r}) goes along one input, {axis} is shared"
-            )
-        there = outer._replace(axes={**outer.axes, axis: np.array([one.place])})
-        steps.append(AtPlace(dims, axis, one, points_of((one.name,), there, (*dims, axis), branch, accuracy)))
-    columns = {name: dim for name, dim in outer.along.items() if dim in dims}
+        if [n for n, dim in outer.along.items() if dim == one.axis] != [one.axis]:
+            raise ValueError(f"reduce: at {one.text}: several inputs vary along {one.axis}")
+        axes = {**outer.axes, one.axis: np.array(one.place)}
+        there = outer._replace(axes=axes, along={n: d for n, d in outer.along.items() if n != one.axis})
+        steps.append(AtPlace(**vars(points_of((one.name,), there, dims, branch, accuracy)), place=one))
+    along = {name: dim for name, dim in outer.along.items() if dim in dims}
     numbers = tuple((name, float(array)) for name, array in outer.axes.items() if not array.ndim)
-    design = {**dict(numbers), **{n: outer.axes[n][:1] for n in columns}}
+    design = {**dict(numbers), **{n: outer.axes[n][:1] for n in along}}
     for own in reductions.functions:
-        steps.append(OfDesign(dims, own, tuple(columns.items()), numbers, tuple(own(design)[1])))  # noqa: PERF401
+        steps.append(OfDesign(dims, tuple(along.items()), own, numbers, tuple(own(design)[1])))  # noqa: PERF401
     return tuple(steps)
