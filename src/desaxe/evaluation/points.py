@@ -168,7 +168,7 @@ class Step(ABC):
 
     @property
     def columns(self) -> dict[str, str]:
-        """What it needs the values of -> the dimension of each."""
+        """The dimension of each column that it needs, by name."""
         return dict(self.along)
 
     @property

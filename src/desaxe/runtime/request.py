@@ -50,7 +50,7 @@ class Request(NamedTuple):
 
     @property
     def key(self) -> tuple[tuple[str, ...], Variant, tuple[tuple[str, float], ...], str]:
-        """What its Program goes by."""
+        """The key of its Program."""
         return self[1:]
 
 

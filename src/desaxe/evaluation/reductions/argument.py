@@ -90,7 +90,7 @@ class Reductions(NamedTuple):
 
 
 def _chains(stages: Sequence[tuple[tuple[str, ...], Iterable[tuple[str, str]]]], name: str) -> list[Chain]:
-    """What stages take of a name, one after the other; equal kinds in a row go along all axes at once."""
+    """The chains of a name through all stages; equal kinds in a row go along all axes at once."""
     chains: list[Chain] = [()]
     for axes, taken in stages:
         kinds = dict.fromkeys(kind for kind, of in taken if of in (EVERY, name))
