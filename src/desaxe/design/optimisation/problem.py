@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...evaluation.labelled import loads_of
 from ...evaluation.reductions.own_measure import OwnMeasure
-from ...evaluation.under_loads.loaded import loads_of
 from ...loads.along_motion import with_derivatives
 from ...mechanism.closed.limits import margins_of
 from ...mechanism.inputs import INPUTS, Input, row_of
