@@ -49,7 +49,7 @@ def test_scenes_of_the_same_names_run_in_threads():
 
     def run(factor):
         kept = dx.scene(tables(factor))
-        for turn in range(cases(15, 100, 400)):
+        for turn in range(cases(5, 100, 400)):
             scene = dx.scene(tables(factor)) if turn % 2 else kept
             result = scene.run()
             np.testing.assert_allclose(result.dataset.twin, factor * result.dataset.V_C, rtol=1e-14)
@@ -69,7 +69,7 @@ def test_define_in_threads():
     over = threading.Event()
 
     def change(number):
-        for turn in range(cases(40, 400, 2000)):
+        for turn in range(cases(10, 400, 2000)):
             factor = 2 + turn % 5
             dx.define(f"mine_{number}", f"{factor}*V_C")
             assert dx.evaluate(f"mine_{number}", **POINT) == pytest.approx(factor * V, rel=1e-14)

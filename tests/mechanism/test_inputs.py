@@ -1,6 +1,7 @@
 """Inputs are listed in `mechanism/inputs.py`; the few places that spell them out again have all of them."""
 
 import inspect
+import io
 import re
 import tokenize
 from pathlib import Path
@@ -37,23 +38,27 @@ def test_a_place_has_every_input(file):
 
 def test_nothing_else_lists_inputs():
     """What else needs their names has them from `INPUTS`."""
+    names = names_in("masses")
+    files = [
+        path
+        for room in ("src", "derive")
+        for kind in ("py", "js")
+        for path in (ROOT / room).rglob(f"*.{kind}")
+    ]
+    texts = {path: path.read_text(encoding="utf-8") for path in files}
     listing = {
-        path.relative_to(ROOT).as_posix() for path in sources() if set(names_in("masses")) <= words(path)
+        path.relative_to(ROOT).as_posix()
+        for path, text in texts.items()
+        if all(name in text for name in names) and set(names) <= words(path, text)
     }
     assert listing - ENTERS <= set(PLACES)
 
 
-def sources():
-    result = [path for room in ("src", "derive") for path in (ROOT / room).rglob("*")]
-    return [path for path in result if path.suffix in (".py", ".js")]
-
-
-def words(path):
+def words(path, text):
     """The words of a file; of Python without docstrings and comments."""
     if path.suffix == ".js":
-        return set(re.findall(r"\w+", path.read_text(encoding="utf-8")))
-    with tokenize.open(path) as file:
-        tokens = list(tokenize.generate_tokens(file.readline))
+        return set(re.findall(r"\w+", text))
+    tokens = tokenize.generate_tokens(io.StringIO(text).readline)
     kept = [token.string for token in tokens if token.type in (tokenize.NAME, tokenize.STRING)]
     return {word for text in kept if not text.startswith('"""') for word in re.findall(r"\w+", text)}
 

@@ -144,15 +144,6 @@ def test_proper_motors_are_no_slips():
         PRESS.steady(torque=motor)
 
 
-@pytest.mark.parametrize(("text", "asked"), [("40 Nm", "N m"), ("4kNm", "kN m"), ("3 Nmm", "N mm")])
-def test_a_torque_without_its_blank(text, asked):
-    """To a unit library Nm is a nautical mile or a length."""
-    with pytest.raises(
-        ValueError, match=rf"torque = '{text}': .*did you mean {asked}\? it must be a quantity"
-    ):
-        PRESS.steady(torque=text)
-
-
 def test_a_load_shows_itself_in_the_units_of_its_machine():
     press = PRESS.over_Y([150, 250], [-1, -2])
     assert repr(press) == "<load over Y: 2 points, linear, -2 to -1 kN>"

@@ -1,4 +1,4 @@
-"""Suggestions for wrong names: the intended name or none, never another one."""
+"""Wrong names: the intended one is suggested or none, never another one, by every public call."""
 
 import inspect
 import re
@@ -11,20 +11,33 @@ from desaxe.mechanism.spelling import WORDS, did_you_mean, meant
 
 SIZES = {"AB": 0.125, "BC": 0.35}
 RUN = {"torque": 1.0, "t_end": 1.0, "ec": 0.0, **SIZES}
-
-CALLS = {
-    "evaluate": lambda **wrong: dx.evaluate("a_C", **wrong),
-    "grid": lambda **wrong: dx.grid("a_C", **wrong),
-    "peak": lambda **wrong: dx.peak("a_C", **wrong),
-    "tolerance": lambda **wrong: dx.tolerance("a_C", **wrong),
-    "design_map": lambda **wrong: dx.design_map("stroke", **wrong),
-    "simulate": lambda **wrong: dx.simulate(**RUN, **wrong),
-    "events": lambda **wrong: dx.events(ec=0.0, **SIZES, **wrong),
-    "feasibility": lambda **wrong: dx.feasibility(**SIZES, **wrong),
-    "inverse": lambda **wrong: dx.inverse(Y=0.3, **SIZES, **wrong),
-    "synthesize": lambda **wrong: dx.synthesize(stroke=0.1, BC=0.3, **wrong),
-    "harmonics": lambda **wrong: dx.harmonics("a_C", **wrong),
+CALLS = {name for name in dx.__all__ if inspect.isroutine(getattr(dx, name))}
+CALLS -= {
+    "between",
+    "plus_minus",
+    "quantities",
+    "scene",
+    "define",
+    "undefine",
+    "equation",
+    "to_excel",
+    "explain",
 }
+
+
+def arguments_of(call):
+    """The parameters of a call, and values for those that it needs."""
+    every = inspect.signature(getattr(dx, call)).parameters.values()
+    named = [p for p in every if p.kind is not p.VAR_KEYWORD and p.name != "sliders"]
+    return named, {p.name: "Y" for p in named if p.default is p.empty}
+
+
+@pytest.mark.parametrize("call", sorted(CALLS))
+def test_an_option_or_an_input_of_a_call(call):
+    named, needed = arguments_of(call)
+    option = ["AB", *(p.name for p in named if p.name not in needed)][-1]
+    with pytest.raises(TypeError, match=rf"has no input '{option}z'; did you mean {option}[, ?]"):
+        getattr(dx, call)(**{**needed, f"{option}z": 1.0})
 
 
 @pytest.mark.parametrize(
@@ -41,17 +54,33 @@ CALLS = {
 )  # fmt: skip
 def test_the_name_that_was_meant(call, wrong, name):
     with pytest.raises(TypeError) as complaint:
-        CALLS[call](**{wrong: 0.1})
+        getattr(dx, call)(**arguments_of(call)[1], **{wrong: 0.1})
     text = str(complaint.value)
     assert re.match(rf"{call}\(\) has no input '{wrong}'; did you mean {name}(, \w+)?( or \w+)?\?$", text)
-    assert complaint.value.__cause__ is None
-    assert complaint.value.__context__ is None
+    assert (complaint.value.__cause__, complaint.value.__context__) == (None, None)
+
+
+@pytest.mark.parametrize(
+    ("make", "meant"),
+    [
+        (lambda: dx.over_Y([0, 1], [1, 2], inwards=[1, 2]), "inward"),
+        (lambda: dx.Machine(units="mm").over_stroke([0, 1], [1, 2], inwards=[1, 2]), "inward"),
+        (lambda: dx.kloss(1, 0.1, 157, geer=2), "gear"),
+        (lambda: dx.over_omega([0, 1], [1, 0], kynd="linear"), "kind"),
+        (lambda: dx.over_theta([0, 1], [1, 1], periode=3), "period"),
+        (lambda: dx.over_theta.read("x.csv", tetha="deg"), "theta"),
+        (lambda: dx.Machine(AB=1, brnach=1), "branch"),
+    ],
+)
+def test_makers_of_loads_and_motors(make, meant):
+    with pytest.raises(TypeError, match=rf"did you mean {meant}\?"):
+        make()
 
 
 @pytest.mark.parametrize(("call", "wrong"), [("events", "theta"), ("grid", "foo"), ("evaluate", "x")])
 def test_no_guess_is_better_than_a_wrong_one(call, wrong):
     with pytest.raises(TypeError, match=rf"{call}\(\) has no input '{wrong}'; there are .*ec, AB, BC"):
-        CALLS[call](**{wrong: 0.1})
+        getattr(dx, call)(**arguments_of(call)[1], **{wrong: 0.1})
 
 
 def test_other_errors_are_told_as_they_are():
@@ -90,8 +119,7 @@ def test_case_spelling_and_words():
     ("word", "name"),
     [
         ("A_C", "a_C"), ("acceleration", "a_C"), ("a", "a_C"), ("velocity", "V_C"), ("v", "V_C"),
-        ("jerk", "j_C"),
-        ("position", "Y"), ("x", "Y"), ("torque", "T_in"), ("side_force", "N_C"),
+        ("jerk", "j_C"), ("position", "Y"), ("x", "Y"), ("torque", "T_in"), ("side_force", "N_C"),
     ],
 )  # fmt: skip
 def test_a_quantity_that_was_meant(word, name):

@@ -282,6 +282,8 @@ def test_a_text_is_refused_with_its_name_and_the_remedy(reader, name, text, word
 
 OF_MAKERS = {
     "torque = '40 Nm': unknown unit; did you mean N m?": lambda: dx.steady(torque="40 Nm", **SIZES),
+    "torque = '4kNm': unknown unit; did you mean kN m?": lambda: dx.steady(torque="4kNm", **SIZES),
+    "torque = '3 Nmm': unknown unit; did you mean N mm?": lambda: dx.steady(torque="3 Nmm", **SIZES),
     "synchronous_speed = '25 Hz': it must be": lambda: dx.kloss(40, 0.1, "25 Hz"),
     "over_omega: speeds = '9 mm': it must be": lambda: dx.over_omega(["1 rpm", "9 mm"], [1, 0]),
     "over_Y: outward = '3 kn': unknown unit; did you mean kN?": lambda: dx.over_Y([0, 1], ["3 kn", 0]),

@@ -100,7 +100,7 @@ def _peaks(shaft: Any, names: Sequence[str]) -> Section:
         top, unit, angle = shaft.peak(name), _unit(shaft, name), _unit(shaft, "theta")
         rows = [(name, cell(top["value"]), unit), ("at theta", cell(top["theta"]), angle)]
         for p, slope in top["gradient"].items():
-            rows.append((f"by {p}", cell(slope), printed(shaft.units.slope(name, p).unit)))
+            rows.append((f"by {p}", cell(slope), printed(shaft.units.of(name).per([shaft.units.of(p)]).unit)))
         tables.append(TextTable(("largest magnitude", "value", "unit"), rows))
     return Section("Peaks", tables)
 

@@ -13,8 +13,7 @@ status        the status codes of every call, with their words
 quantity_units  units of inputs, quantities and their derivatives, in SI and in any system
 messages      texts that know which of their numbers are quantities, for a front end's units
 ranges        `between` and `plus_minus`: inputs with a range or tolerance
-public        public functions, which warn of slips of units
-typical       sizes of inputs, beyond which a number is a slip
+public        public functions, which warn of slips of units: sizes that are typical
 slips         plain numbers that are almost surely in another unit
 own           user-defined quantities: the register
 own_lines     their lines in the Program, with derivatives

@@ -90,10 +90,6 @@ class UnitSystem:
         except ValueError:
             return None
 
-    def slope(self, name: str | Conversion, by: str) -> Conversion:
-        """The conversion of a derivative by an input."""
-        return (self.of(name) if isinstance(name, str) else name).per([self.of(by)])
-
     @computed_once
     def _by_name(self) -> dict[str, Conversion]:
         """The conversions of quantities with units of their own."""

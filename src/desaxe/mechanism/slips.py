@@ -17,10 +17,10 @@ from ..units.parse import factor_to_si
 from ..units.system import Conversion
 from ..units.text import plain_number
 from .inputs import INPUTS
+from .public import FARTHEST, FORCES, GRAVITY, KINDS, MOST_PERCENT, SHARE, SIZE, TURNS, Typical
 from .quantity_units import SI, UnitSystem
 from .ranges import Between, PlusMinus
 from .read import number_of
-from .typical import FARTHEST, FORCES, GRAVITY, KINDS, MOST_PERCENT, SHARE, SIZE, TURNS, Typical
 
 LINKS, SHORTEST = ("AB", "BC"), 5e-4  # m: shorter ones are in metres where another unit is meant
 WEAKEST = 0.1  # m/s^2: a gravity below is in m/s^2 where another unit is meant

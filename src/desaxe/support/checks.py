@@ -30,13 +30,3 @@ def real_number(name: str, value: Any) -> float:
         return float(value)
     except OverflowError:
         raise ValueError(f"{name} = {shown(value)}: it is beyond the largest double, 1.8e308") from None
-
-
-def time_limit(value: Any) -> float | None:
-    """A number of seconds above 0, or None for no limit."""
-    if value is None:
-        return None
-    seconds = real_number("timeout", value)
-    if not seconds > 0.0:
-        raise ValueError(f"timeout = {shown(value)}: a number of seconds above 0, or None for no limit")
-    return seconds

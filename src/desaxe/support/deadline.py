@@ -6,8 +6,9 @@ from contextlib import contextmanager
 from math import inf
 from typing import Any
 
-from .checks import time_limit
+from .checks import real_number
 from .progress import Progress, progress_bar
+from .shown import shown
 
 
 class Deadline:
@@ -17,9 +18,11 @@ class Deadline:
     """
 
     def __init__(self, what: str, timeout: Any) -> None:
-        self.what, self.seconds = what, time_limit(timeout)
+        self.what, self.seconds = what, inf if timeout is None else real_number("timeout", timeout)
+        if not self.seconds > 0.0:
+            raise ValueError(f"timeout = {shown(timeout)}: a number of seconds above 0, or None for no limit")
         self._start = time.monotonic()
-        self._end = inf if self.seconds is None else self._start + self.seconds
+        self._end = self._start + self.seconds
         self._checks = 0
         self._watch: Progress | None = None
 
@@ -33,7 +36,8 @@ class Deadline:
         if self._watch is not None:
             self._checks += 1
             gone = int(time.monotonic() - self._start)
-            self._watch(gone, int(self.seconds or gone + 1), f"{self.what}, {self._checks} evaluations")
+            most = gone + 1 if self.seconds == inf else int(self.seconds)
+            self._watch(gone, most, f"{self.what}, {self._checks} evaluations")
         if self.over:
             raise self.error()
 
