@@ -3,13 +3,13 @@
 import math
 import subprocess
 import sys
+from contextlib import ExitStack
 
 import numpy as np
 import pytest
 from mpmath import mp
 
 import desaxe as dx
-from desaxe.mechanism.own import definitions
 from desaxe.oracle.force_truth import OTHERS
 from tests.definitions.expressions import BODIES, EXPRESSIONS, GENERIC, defined
 
@@ -127,10 +127,9 @@ def test_the_peak_of_a_kinked_quantity_and_its_gradient():
 def test_nothing_is_stale():
     inputs = {p: value for p, value in POINT.items() if p != "theta"}
     theta = np.array([0.3, 1.1])
-    try:
+    with defined("own", "V_C"), defined("of_own", "own / V_C"):
         for factor in (1, 3):
             dx.define("own", f"{factor} * V_C")
-            dx.define("of_own", "own / V_C")
             assert dx.evaluate("of_own", **POINT) == factor
             assert dx.evaluate("of_own", theta=theta, **inputs).tolist() == [factor, factor]
             peaks = dx.peak("own", **inputs)["value"], dx.peak("V_C", **inputs)["value"]
@@ -138,10 +137,6 @@ def test_nothing_is_stale():
             assert dx.quantities()["own"].source == f"{factor} * V_C"
         with pytest.raises(ValueError, match="used by of_own"):
             dx.undefine("own")
-    finally:
-        for name in ("of_own", "own"):
-            if name in definitions():
-                dx.undefine(name)
     for name in ("own", "own_wrt_ec"):
         with pytest.raises(ValueError, match="unknown quantity"):
             dx.evaluate(name, **POINT)
@@ -150,33 +145,22 @@ def test_nothing_is_stale():
 
 
 def test_a_new_definition_is_checked_with_those_that_use_it():
-    try:
-        dx.define("base", "V_C")
-        dx.define("user", "base + V_C")
+    with defined("base", "V_C"), defined("user", "base + V_C"):
         with pytest.raises(ValueError, match="user: '\\+' wants one dimension"):
             dx.define("base", "a_C")
         with pytest.raises(ValueError, match="defined by itself"):
             dx.define("base", "user")
         assert dx.evaluate("user", **POINT) == 2 * dx.evaluate("V_C", **POINT)
-    finally:
-        dx.undefine("user")
-        dx.undefine("base")
 
 
 def test_a_definition_can_have_the_name_of_a_line():
     """The derivation's own names and those that emitters use are no names of a user's."""
     names = ("D", "eps", "t0", "x", "x_close", "length", "slope", "max_x")
-    made = []
-    try:
+    with ExitStack() as stack:
         for count, name in enumerate(names):
-            dx.define(name, f"{count + 1} * V_C")
-            made.append(name)
-        value = dx.evaluate("V_C", **POINT)
-        result = dx.evaluate(list(names), **POINT)
-        assert [result[name] for name in names] == [(k + 1) * value for k in range(len(names))]
-    finally:
-        for name in made:
-            dx.undefine(name)
+            stack.enter_context(defined(name, f"{count + 1} * V_C"))
+        result = dx.evaluate(["V_C", *names], **POINT)
+    assert [*result.values()][1:] == [(k + 1) * result["V_C"] for k in range(len(names))]
 
 
 def test_angles_of_an_expression_have_any_size():

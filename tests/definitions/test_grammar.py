@@ -105,11 +105,8 @@ def test_wrong_types(wrong):
 
 def test_constants_have_units_without_a_unit_library():
     for text, expected in (("1 mm", 1e-3), ("0.5 cm", 0.005), ("2 km", 2000.0)):
-        dx.define("own", "k + 0 * Y", k=text)
-        try:
+        with defined("own", "k + 0 * Y", k=text):
             assert dx.evaluate("own", theta=1.0, ec=0.0, AB=0.1, BC=0.3) == expected
-        finally:
-            dx.undefine("own")
 
 
 LEAVES = ("1", "2.5", ".5", "3.", "4e-1", "phi", "theta", "pi", "k")

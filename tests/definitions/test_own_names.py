@@ -1,7 +1,7 @@
 """The name of an own quantity changes nothing: not its type, and not what else a file or a call has."""
 
 import math
-from contextlib import ExitStack
+from contextlib import ExitStack, nullcontext
 
 import numpy as np
 import pytest
@@ -91,15 +91,14 @@ def test_a_name_that_would_hide_a_part_of_the_module_is_refused(to, name, tmp_pa
         dx.compile(scene(name), file, to=to)
 
 
-def test_other_names_are_right_in_python(doubled, tmp_path):
+@pytest.mark.parametrize("to", [pytest.param("numba", marks=pytest.mark.thorough), "jax"])
+def test_other_names_are_right_in_python(to, doubled, tmp_path):
     at, names = (0.7, 0.01), doubled(["kernel", "signature", "length", "x"])
-    numba = imported(dx.compile(scene(*names), tmp_path / "press_numba.py"))
-    jax = imported(dx.compile(scene(*names), tmp_path / "press_jax.py", to="jax"))
-    expected = 2.0 * dx.evaluate("V_C", theta=at[0], **POINT)
-    for place, name in enumerate(names):
-        assert numba.point(*at)[place] == getattr(numba, name)(*at) == pytest.approx(expected, rel=1e-14)
-        with jax_in_doubles():
-            assert float(getattr(jax, name)(*at)) == pytest.approx(expected, rel=1e-13)
+    made = imported(dx.compile(scene(*names), tmp_path / f"press_{to}.py", to=to))
+    expected = pytest.approx(2.0 * dx.evaluate("V_C", theta=at[0], **POINT), rel=1e-13)
+    with jax_in_doubles() if to == "jax" else nullcontext():
+        assert [float(getattr(made, name)(*at)) for name in names] == [expected] * len(names)
+    assert to == "jax" or made.point(*at)[: len(names)] == tuple(getattr(made, name)(*at) for name in names)
 
 
 def test_a_function_of_a_design_may_be_called_skipped():

@@ -49,13 +49,9 @@ def test_a_scene_defines_its_quantities(tmp_path):
 def test_a_pickled_scene_brings_its_quantities_with_it(tmp_path):
     scene = dx.scene(SCENE)
     (tmp_path / "scene").write_bytes(pickle.dumps(scene))
-    code = (
-        "import pickle, sys; scene = pickle.load(open(sys.argv[1], 'rb')); import desaxe as dx;"
-        f"print(repr(dx.evaluate('of_both', **{POINT})))"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code, str(tmp_path / "scene")], capture_output=True, text=True, check=True
-    )
+    code = "import pickle, sys; scene = pickle.load(open(sys.argv[1], 'rb')); import desaxe as dx;"
+    command = [sys.executable, "-c", f"{code} print(dx.evaluate('of_both', **{POINT}))", tmp_path / "scene"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert float(done.stdout) == dx.evaluate("of_both", **POINT)
 
 
@@ -72,6 +68,7 @@ def test_a_pickled_function_brings_its_quantities_with_it(tmp_path):
     assert dx.evaluate("shoe", **POINT) == pytest.approx(value / 0.08, rel=1e-14)
 
 
+@pytest.mark.thorough
 def test_a_compiled_module_has_them(tmp_path):
     dx.compile(SCENE, tmp_path / "own_kernels.py")
     code = "import own_kernels, sys; print(own_kernels.point(1.0, 0.01)[0], 'desaxe' in sys.modules)"
