@@ -102,6 +102,7 @@ def test_a_motor_speaks_the_units_of_its_machine():
     assert repr(table) == "<motor over omega: 2 speeds, linear, 0 kN m to 1 kN m>"
 
 
+@pytest.mark.thorough
 def test_a_report_shows_loads_in_the_machines_units(tmp_path):
     press = PRESS.replace(F_Y=PRESS.over_Y([150, 250], [-1, -2]))
     text = press.report(tmp_path / "press.md", outputs="Y").read_text(encoding="utf-8")
