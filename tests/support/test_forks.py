@@ -32,6 +32,14 @@ CASES = {
         "    Thing().slow",
         "    Thing().slow",
     ),
+    "llvmlite is half imported": (
+        "import sys, types\nfrom desaxe.compiler.llvm.machine import lanes\n"
+        "from desaxe.support.forks import IMPORTS",
+        "    sys.modules['llvmlite.binding.ffi'] = types.ModuleType('half')\n"
+        "    with IMPORTS:\n        began.set()\n        time.sleep(0.5)\n"
+        "        del sys.modules['llvmlite.binding.ffi']\n        import llvmlite.binding\n    lanes()",
+        "    lanes()",
+    ),
     "definitions are being replaced": (
         "from desaxe.mechanism import own\n"
         "def slow(known):\n    began.set()\n    time.sleep(0.5)\n    return known",

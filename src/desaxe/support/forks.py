@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from threading import RLock, local
 from types import ModuleType, TracebackType
-from typing import Any
+from typing import Any, Protocol
 
 from .signals import is_main, put_off
 
@@ -76,12 +76,30 @@ class ImportLock(ForkSafeLock):
             later.__exit__(kind, error, trace)
 
 
-_LOCKS: list[ForkSafeLock] = []
+class Waited(Protocol):
+    """A lock that a fork waits for: `ForkSafeLock`, or that of a library."""
+
+    def acquire_until(self, end: float) -> bool:
+        """Try to acquire it until some time of the monotonic clock."""
+
+    def release(self) -> None:
+        """Release it after the fork."""
+
+    def renew(self) -> None:
+        """In the child: free it of a thread that is not there."""
+
+
+_LOCKS: list[Waited] = []  # acquired from the last to the first
 _HELD = local()  # of the forking thread: the locks that it has acquired
 
 # Held by every import inside a function. A module that another thread has imported halfway cannot be imported
 # in a child at all: Python's own lock of it stays locked there.
 IMPORTS = ImportLock()
+
+
+def acquired_last(lock: Waited) -> None:
+    """Acquire a library's lock before each fork after all others: imports, which it may block, have ended."""
+    _LOCKS.insert(0, lock)
 
 
 def imported(name: str) -> ModuleType:
@@ -98,11 +116,13 @@ def _before() -> None:
     """Acquire the locks, those that are taken first in a call before those taken inside it."""
     end = time.monotonic() + WAIT
     known = {name for name in _ALIKE if _is_imported(name)}
+    _HELD.locks = []
     with _without_logging():
-        _HELD.locks = [lock for lock in reversed(_LOCKS) if lock.acquire_until(end)]
-    for name, lock in _ALIKE.items():
+        # One by one: an error of one leaves none of the others acquired for ever.
+        _HELD.locks.extend(lock for lock in reversed(_LOCKS) if lock.acquire_until(end))
+    for name, attribute in _ALIKE.items():
         if name not in known and _is_imported(name):  # while we waited: it releases what it has not acquired
-            getattr(sys.modules[name], lock).acquire()
+            getattr(sys.modules[name], attribute).acquire()
 
 
 def _is_imported(name: str) -> bool:

@@ -15,52 +15,44 @@ from itertools import count
 from threading import RLock
 from typing import Any
 
-from ...support.forks import IMPORTS, ForkSafeLock
+from ...support.forks import IMPORTS, ForkSafeLock, acquired_last
 
 MATHEMATICS = ("asin", "atan2", "cos", "exp", "floor", "fma", "log", "nextafter", "pow", "sin")
 MEMORY = ("memmove", "memset")
 
 
-class _Lock(ForkSafeLock):
-    """The lock of LLVM; when the process forks, that of llvmlite with it."""
+class _LlvmliteLock:
+    """The lock that llvmlite holds during each call; a fork waits for it once imports have ended."""
 
     def __init__(self) -> None:
-        super().__init__()
-        self._other: Any = None  # of llvmlite, acquired for a fork
+        self._acquired: Any = None
 
     def acquire_until(self, end: float) -> bool:
-        """Try to acquire both until some time of the monotonic clock."""
-        if not super().acquire_until(end):
+        """Try to acquire it until some time of the monotonic clock; False as long as it does not exist."""
+        library = _library()
+        if library is None or not library._lock._lock.acquire(timeout=max(end - time.monotonic(), 0.0)):
             return False
-        other = _llvmlite_lock()
-        if other is None or other._lock.acquire(timeout=max(end - time.monotonic(), 0.0)):
-            self._other = other
-            return True
-        super().release()
-        return False
+        self._acquired = library._lock._lock
+        return True
 
     def release(self) -> None:
-        """Release both."""
-        if self._other is not None:
-            self._other._lock.release()
-            self._other = None
-        super().release()
+        """Release it after a fork."""
+        self._acquired.release()
 
     def renew(self) -> None:
-        """In a child: free both of threads that are not there."""
-        super().renew()
-        other = _llvmlite_lock()
-        if other is not None:
-            other._lock = RLock()
+        """In a child: free it of a thread that is not there."""
+        library = _library()
+        if library is not None:
+            library._lock._lock = RLock()
 
 
-def _llvmlite_lock() -> Any:
-    """The lock that llvmlite holds during each call; None as long as it is not imported."""
-    binding = sys.modules.get("llvmlite.binding.ffi")
-    return None if binding is None else binding.lib._lock
+def _library() -> Any:
+    """The library of llvmlite; None before and during its import."""
+    return getattr(sys.modules.get("llvmlite.binding.ffi"), "lib", None)
 
 
-LOCK = _Lock()
+LOCK = ForkSafeLock()
+acquired_last(_LlvmliteLock())
 _UNUSED: deque[Any] = deque()
 
 
