@@ -1,4 +1,8 @@
-"""One machine gives one number through every front end: function, Machine, scene, command, sweep, report."""
+"""One machine gives one number through every front end.
+
+Function, Machine, scene, command, sweep, report, exported languages, FMU; the page of `explore` in
+`explorer/test_numbers.py`.
+"""
 
 import json
 import math
@@ -10,7 +14,11 @@ import pytest
 
 import desaxe as dx
 from desaxe.cli import main
+from desaxe.compiler.languages import language_of
 from desaxe.mechanism.own import using
+from tests.compiler.languages.runners import caller
+from tests.effort import first
+from tests.scenes.export.test_fmu import simulated
 
 SCENE = """
 title = "press"
@@ -110,6 +118,39 @@ def test_values(case, command):
     if name != DESIGNS:
         by_words = command("evaluate", ",".join(scene.outputs), f"theta={last / 8}", "--machine", path)
         assert_same([by_words[n] for n in scene.outputs], [point[n] for n in scene.outputs])
+
+
+LANGUAGES = ["javascript", "octave", "c", "numba", "jax"]
+
+
+@pytest.mark.parametrize("language", first(2, LANGUAGES))
+def test_languages(case, language, tmp_path):
+    """Of every design of the grid, to some ulp of the largest value."""
+    name, path, machine = case
+    scene = dx.scene(path)
+    axes = {n: value for n, value in scene.inputs.items() if isinstance(value, tuple)}
+    columns = [column.ravel() for column in np.meshgrid(*axes.values(), indexing="ij")]
+    place = tmp_path / f"press{language_of(language).suffix}"
+    dx.compile(path, place, to=language)
+    values = caller(language, place, list(axes), scene.outputs)(columns)
+    for n, known in values_of(name, scene.outputs, machine).items():
+        assert_same(machine.units.of(n).shown(values[n]), known.ravel())
+
+
+@pytest.mark.parametrize("name", first(2, dict.fromkeys(["two turns", "user-defined", *SCENES])))
+def test_fmu(name, tmp_path):
+    """At a given speed, whose angles are those that the importer integrated; of designs the first."""
+    path = tmp_path / "press.toml"
+    path.write_text(SCENES[name])
+    machine, outputs = dx.Machine.read(path), dx.scene(path).outputs
+    place = dx.compile(path, tmp_path / "press.fmu", to="fmu", input="omega")
+    speed, end = 10 * np.pi, 0.4 if name == "two turns" else 0.2
+    result = simulated(str(place), "ModelExchange", end, 0.01, ["theta", *outputs], omega=speed, theta0=0.0)
+    design = {n: np.ravel(v)[0] if hasattr(v, "tolist") else v for n, v in machine.items() if n != "omega0"}
+    with using(machine.definitions):
+        known = dx.evaluate(list(outputs), theta=result["theta"], omega=speed, alpha=0.0, **design)
+    for n in outputs:
+        assert_same(result[n], known[n])
 
 
 def test_peaks(case, command):

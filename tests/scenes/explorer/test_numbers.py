@@ -3,12 +3,15 @@
 import math
 import random
 
+import numpy as np
 import pytest
 
 import desaxe as dx
 from desaxe.oracle.families import points
 from desaxe.oracle.force_truth import OTHERS, conditions
+from tests.effort import first
 from tests.points import draw
+from tests.scenes.test_one_number import SCENES, values_of
 
 BOUND = 1e-13
 MOTION = {"omega0": 157.0, "alpha": -3.0}
@@ -130,3 +133,24 @@ def test_gaps_and_kind_are_those_of_feasibility(lengths, standing):
         assert sorted((a % turn, b % turn) for a, b in gaps) == [
             pytest.approx(end, abs=1e-14) for end in ends
         ]
+
+
+OF_DESIGNS = """([names, angles]) => desaxe.state.designs.map((at) =>
+  names.map((name) => angles.map((theta) => desaxe.valueAt(name, at, theta))));"""
+
+
+@pytest.mark.parametrize("name", first(2, dict.fromkeys(["two turns", "designs", *SCENES])))
+def test_the_page_of_a_scene_has_the_values_of_its_machine(name, numbers_of, tmp_path):
+    """The last front end of `test_one_number.py`."""
+    path = tmp_path / "press.toml"
+    path.write_text(SCENES[name])
+    outputs, machine = dx.scene(path).outputs, dx.Machine.read(path)
+    theta = np.radians(np.linspace(0, 720 if name == "two turns" else 360, 73))
+    page = numbers_of(dx.explore(path, tmp_path / "page.html"))
+    designs = page.evaluate(OF_DESIGNS, [outputs, theta.tolist()])
+    known = {n: v.reshape(73, -1) for n, v in values_of(name, outputs, machine).items()}
+    assert len(designs) == known["a_C"].shape[1]
+    for k, values in enumerate(designs):
+        for n, value in zip(outputs, values, strict=True):
+            expected, scale = known[n][:, k], 1e-12 * np.abs(known[n]).max()
+            np.testing.assert_allclose(machine.units.of(n).shown(np.array(value)), expected, 1e-12, scale)
