@@ -144,15 +144,12 @@ def _sweep(options: argparse.Namespace) -> int:
 
 def _chunks(text: str | None) -> Any:
     """`auto`, a number, or `theta=1000,ec=10`."""
-    if text is None or text == "auto":
-        return "auto"
+    pairs = [part.rpartition("=") for part in (text or "auto").split(",")]
     try:
-        if "=" not in text:
-            return int(text)
-        pairs = (part.split("=", 1) for part in text.split(","))
-        return {name.strip(): "auto" if value == "auto" else int(value) for name, value in pairs}
+        lengths = {name.strip(): n if n == "auto" else int(n) for name, _, n in pairs}
     except ValueError:
         raise UsageError(f"--chunks {text}: auto, a number, or pairs such as theta=1000,ec=10") from None
+    return lengths[""] if [*lengths] == [""] else lengths
 
 
 @contextmanager

@@ -37,35 +37,32 @@ class NoInputError(KeyError):
 
     def __str__(self) -> str:
         name, machine = self.args
-        if message := _as_quantity(name):
-            return f"a machine has no input {name!r}; {message}"
         near = _meant(name, machine) or _meant(name, INPUTS)
         inputs = "" if near in machine else ", which is not given"
         hint = f"did you mean {near}{inputs}?" if near else f"it has {', '.join(machine)}"
-        return f"a machine has no input {name!r}; {hint}"
+        return f"a machine has no input {name!r}; {_as_quantity(name) or hint}"
 
 
 class NoAttributeError(AttributeError):
     """A machine has no such method; the message names the nearest one."""
 
     def __str__(self) -> str:
-        if message := _as_quantity(self.name):
-            return f"a machine has no method {self.name!r}; {message}"
         near = _meant(self.name, (name for name in dir(self.obj) if name[0] != "_"))
-        there = f"; its inputs are machine[{self.name!r}] and so on" if self.name in INPUTS else ""
-        return f"a machine has no method {self.name!r}" + (f"; did you mean {near}?" if near else there)
+        hint = f"its inputs are machine[{self.name!r}] and so on" if self.name in INPUTS else ""
+        hint = f"did you mean {near}?" if near else hint
+        return "; ".join(
+            filter(None, [f"a machine has no method {self.name!r}", _as_quantity(self.name) or hint])
+        )
 
 
 def _as_quantity(name: Any) -> str:
     """The hint for a quantity that was taken for an input or a method; empty for any other name."""
     with IMPORTS:
         from ..mechanism.catalogue import has
+        from ..mechanism.program import program_of
 
     if not isinstance(name, str) or name in INPUTS or not has(name):
         return ""
-    with IMPORTS:
-        from ..mechanism.program import program_of
-
     at = ", theta=..." if "theta" in program_of((name,)).inputs else ""
     return f"it is a quantity, which machine.evaluate({name!r}{at}) gives"
 

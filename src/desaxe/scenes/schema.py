@@ -68,7 +68,14 @@ _MOTOR = (
 
 TEXT = _rule("text", "string")
 NAME = _rule("the name of a quantity", "string")
-FILE = _rule("the path of a file", "string")
+
+
+def _file(*suffixes: str) -> Rule:
+    either = "|".join(one[1:] for one in (*suffixes, *map(str.upper, suffixes)))
+    about = f"the path of a file, which must end in one of {', '.join(suffixes)}"
+    return _rule(about, "string", pattern=rf"\.({either})$")
+
+
 UNIT = _rule('a unit of a column of a file, such as "deg"', "string")
 NUMBER = _rule(_NUMBER, "number", "string")
 NUMBERS = _rule(f"{_NUMBER}, or a list of these", "number", "string", _list_of(NUMBER))
@@ -157,8 +164,9 @@ LISTED = {
         claim=_list_of(CLAIM, "a list of tables, [[peak.claim]]"),
     ),
     "picture": _table(
-        "a quantity over one input, one curve for each value of another", ("file", "quantity"), file=FILE,
-        quantity=NAME, over=_rule("the name of an input", "string"), family=AXES, at=DESIGN, title=TEXT,
+        "a quantity over one input, one curve for each value of another", ("file", "quantity"),
+        file=_file(".png", ".svg", ".pdf"), quantity=NAME, family=AXES, at=DESIGN, title=TEXT,
+        over=_rule("the name of an input", "string"),
     ),
 }  # fmt: skip
 STEADY = _table(
@@ -168,7 +176,8 @@ STEADY = _table(
 RESULTS = _table(
     "a table, [results]: where the labelled values go: .nc, .zarr, .csv, .xlsx or .npz, or a store that they "
     "are swept into chunk by chunk",
-    data=FILE, store=_rule('the folder of a Zarr store, such as "press.zarr"', "string"),
+    data=_file(".nc", ".zarr", ".csv", ".xlsx", ".npz"),
+    store=_rule('the folder of a Zarr store, such as "press.zarr"', "string"),
     chunks=_rule('"auto", a number of points, or a table such as { theta = 1000 }', "integer", "string",
                  _mapping_of(_rule("a number of points", "integer", "string"), "chunks")),
     memory=_rule('text such as "200 MB", or a number of bytes', "integer", "string"),
@@ -256,6 +265,8 @@ def _is_of(value: Any, rule: Rule) -> bool:
         return False
     if isinstance(value, list):
         return bool(rule.get("minItems", 0) <= len(value) <= rule.get("maxItems", len(value)))
+    if isinstance(value, str) and "pattern" in rule and not re.search(rule["pattern"], value):
+        return False
     least: float = rule.get("minimum", -inf)
     return value in rule.get("enum", [value]) and (isinstance(value, (str, Mapping)) or value >= least)
 

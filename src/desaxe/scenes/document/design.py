@@ -1,6 +1,7 @@
 """The sections on the designs of a scene: inputs, mechanism and geometry, drive, tolerances."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import product
 from math import inf, pi
 from typing import Any, NamedTuple
@@ -195,18 +196,12 @@ def drive(content: Content, units: UnitSystem, fluctuation: float) -> Section | 
         return None
     drives: dict[str, Any] = {}
     blocks: list[Block] = []
+    options: dict[str, Any] = {"branch": content.branch, "fluctuation": fluctuation}
     for one in designs_of(content, units):
         words = one.words or "this design"
-        try:
-            result = drive_of(fluctuation=fluctuation, branch=content.branch, **one.inputs)
-        except (ValueError, TypeError) as error:
-            blocks.append(Text(f"{words}: {error}"))
-            continue
-        result = in_units(result, units)
-        if result["status"]:
-            blocks.append(Text(f"{words}: status {result['status']}, {DriveStatus(result['status']).words}"))
-        if "T_in" in result.course:
-            drives[words] = result
+        result = _attempted(words, blocks, DriveStatus, partial(drive_of, **options, **one.inputs))
+        if result is not None and "T_in" in result.course:
+            drives[words] = in_units(result, units)
     if not drives:
         return Section("Drive", blocks) if blocks else None
     words, first = next(iter(drives.items()))
@@ -214,6 +209,18 @@ def drive(content: Content, units: UnitSystem, fluctuation: float) -> Section | 
     picture = image_of(first.plot().figure, f"Torque of the drive over {cycle}, {words}")
     table = _side_by_side([*drives], [dict(result.rows()) for result in drives.values()])
     return Section("Drive", [table, picture, *blocks])
+
+
+def _attempted(words: str, remarks: list[Block], codes: Any, call: Callable[[], Any]) -> Any:
+    """The answer of a call; None where it refuses. A remark says why, or what its status is."""
+    try:
+        result = call()
+    except (ValueError, TypeError) as error:
+        remarks.append(Text(f"{words}: {error}"))
+        return None
+    if result["status"]:
+        remarks.append(Text(f"{words}: status {result['status']}, {codes(result['status']).words}"))
+    return result
 
 
 # ---- tolerances ----------------------------------------------------------------------------------
@@ -250,15 +257,10 @@ def spread(content: Content, units: UnitSystem, tolerances: Mapping[str, float])
             continue
         measure: Any = name if of_design(name) else ("absmax", name)
         words = name if of_design(name) else f"largest magnitude of {name}"
-        try:
-            result = tolerance(measure, branch=content.branch, samples=SAMPLES, **design.inputs | ranges)
-        except (ValueError, TypeError) as error:
-            remarks.append(Text(f"{words}: {error}"))
-            continue
-        rows.append((words, *_scatter(name, result, units)))
-        if result["status"]:
-            reason = ToleranceStatus(result["status"]).words
-            remarks.append(Text(f"{words}: status {result['status']}, {reason}"))
+        options = {"branch": content.branch, "samples": SAMPLES, **design.inputs, **ranges}
+        result = _attempted(words, remarks, ToleranceStatus, partial(tolerance, measure, **options))
+        if result is not None:
+            rows.append((words, *_scatter(name, result, units)))
     first = Text(f"With {listed}{about}, each a normal distribution of 3 standard deviations.")
     return Section("Tolerances", [first, *([TextTable(SPREAD, rows)] if rows else []), *remarks])
 

@@ -207,13 +207,13 @@ def _answer(one: Peak, content: Content, sink: Sink) -> PeakResult:
     values = _searched(one, content, columns, sink)
     shape, count = [len(axis) for axis in one.axes.values()], one.designs
     arrays = {name: array[:count].reshape(shape) for name, array in values.items()}
-    claims: tuple[ClaimResult, ...] = ()
+    claims: list[ClaimResult] = []
     if one.baseline:
         base, *claimed = values["value"][count:].tolist()
-        arrays["increase"] = np.asarray(_increase(arrays["value"], base))
-        computed = [float(_increase(value, base)) for value in claimed]
-        pairs = zip(one.claims, computed, strict=True)
-        claims = tuple(ClaimResult(claim, value, claim.increase.agrees(value)) for claim, value in pairs)
+        arrays["increase"] = _increase(arrays["value"], base)
+        for claim, value in zip(one.claims, claimed, strict=True):
+            computed = float(_increase(value, base))
+            claims.append(ClaimResult(claim, computed, claim.increase.agrees(computed)))
     mirrored = _mirrored(one, content, columns, values)[:count].reshape(shape)
     known = quantity(one.quantity, one.state)
     words = f"{WORDS[one.kind]} of {one.quantity}, {known.meaning}"
@@ -228,7 +228,7 @@ def _answer(one: Peak, content: Content, sink: Sink) -> PeakResult:
     }
     about = {"quantity": one.quantity, "kind": one.kind}
     dataset = content.labelled(rows, one.axes, {**one.fixed, **one.loads}, about)
-    return PeakResult(peak=one, dataset=dataset, claims=claims, mirrored=mirrored)
+    return PeakResult(peak=one, dataset=dataset, claims=tuple(claims), mirrored=mirrored)
 
 
 def _searched(

@@ -33,9 +33,6 @@ from ..parts.turning import feasibility_of
 from ..schema import SECTIONS, SceneError, check, shown
 from .values import Value, require_for_grid, require_known, values_of, written_inputs
 
-PICTURES = (".png", ".svg", ".pdf")
-DATA = (".nc", ".zarr", ".csv", ".xlsx", ".npz")
-
 
 def plain_data(source: str | PathLike[str] | Mapping[str, Any]) -> dict[str, Any]:
     """The tables of a scene file, or of the same thing in Python (NumPy numbers and arrays are fine)."""
@@ -106,7 +103,6 @@ def _content(
         raise SceneError(
             "the scene requests nothing: give outputs = [...], [[peak]], [[check]], [[picture]] or [steady]"
         )
-    _require_names(data)
 
     def each(key: str, one_of: Any) -> list[Any]:
         """The requests of the tables of a list."""
@@ -136,6 +132,8 @@ def _storage(
     file, store, chunks = (results.get(key) for key in ("data", "store", "chunks"))
     if store is not None and file is not None:
         raise SceneError(f"results.store = {shown(store)}: give a store or a file (results.data), not both")
+    if file is not None and not any(data.get(key) for key in ("outputs", "peak", "steady")):
+        raise SceneError(f"results.data = {shown(file)}: there is nothing to write, give outputs = [...]")
     if store is not None and not (outputs or data.get("peak")):
         message = "give outputs or [[peak]], or results.data for a steady state alone"
         raise SceneError(f"results.store = {shown(store)}: there is nothing to store; {message}")
@@ -170,19 +168,6 @@ def _reduction(
 
 def _as_tuple(part: Any) -> Any:
     return tuple(map(_as_tuple, part)) if isinstance(part, list) else part
-
-
-def _require_names(data: Mapping[str, Any]) -> None:
-    """SceneError for a file name whose suffix is no known format."""
-    file = data.get("results", {}).get("data")
-    if file is not None and not file.endswith(DATA):
-        raise SceneError(f"results.data = {shown(file)}: its name must end in one of {', '.join(DATA)}")
-    if file is not None and not any(data.get(key) for key in ("outputs", "peak", "steady")):
-        raise SceneError(f"results.data = {shown(file)}: there is nothing to write, give outputs = [...]")
-    for index, picture in enumerate(data.get("picture", ()), 1):
-        if not picture["file"].lower().endswith(PICTURES):
-            key = f"picture #{index}.file = {shown(picture['file'])}"
-            raise SceneError(f"{key}: must end in one of {', '.join(PICTURES)}")
 
 
 def _inputs(data: Mapping[str, Any], folder: Path | None, units: UnitSystem) -> dict[str, Value]:

@@ -188,11 +188,6 @@ def _csv(path: Path, parts: "Parts") -> None:
             csv.writer(file).writerows(table_of(part))
 
 
-def _xlsx(path: Path, parts: "Parts") -> None:
-    """A sheet for each part, and one on what they are about."""
-    write_workbook(path, sheets_of(parts))
-
-
 def _npz(path: Path, parts: "Parts") -> None:
     """Arrays by name, coordinates too; those of a peak with its group before them."""
     arrays: dict[str, Any] = {
@@ -205,5 +200,6 @@ def _npz(path: Path, parts: "Parts") -> None:
 
 
 _WRITERS: "dict[str, Writer]" = {
-    ".nc": _netcdf, ".zarr": _zarr, ".csv": _csv, ".xlsx": _xlsx, ".npz": _npz,
+    ".nc": _netcdf, ".zarr": _zarr, ".csv": _csv, ".npz": _npz,
+    ".xlsx": lambda path, parts: write_workbook(path, sheets_of(parts)),
 }  # fmt: skip
