@@ -46,8 +46,17 @@ def test_curves_of_a_motion_over_time_and_over_the_angle():
 def test_each_of_many_designs_has_its_curve():
     torque = dx.over_omega([0.0, 90.0], [1.0, 0.0])
     result = dx.simulate(torque=torque, t_end=0.2, **{**DESIGN, "m_slider": [1.0, 2.0, 3.0]})
-    lines = result.plot()["omega"]
+    picture = result.plot()
+    lines = picture["omega"]
     assert len(lines) == 3
+    legend = picture.axes[0].get_legend()
+    assert [text.get_text() for text in (legend.get_title(), *legend.get_texts())] == [
+        "m_slider [kg]", "1", "2", "3"
+    ]  # fmt: skip
+    press = dx.Machine({**DESIGN, "AB": 50.0, "BC": 120.0, "ec": 10.0}, units="mm, deg, rpm")
+    both = press.replace(AB=[45.0, 50.0]).simulate(torque=[1.0, 2.0], t_end=0.1).plot()
+    texts = [text.get_text() for text in both.axes[0].get_legend().get_texts()]
+    assert texts == ["AB = 45 mm, torque = 1 N m", "AB = 50 mm, torque = 2 N m"]
     np.testing.assert_array_equal(lines[2].get_ydata(), result["omega"][2])
     one = dx.simulate(torque=1.0, t_end=0.2, wrt="theta0", **DESIGN)
     assert list(one.plot())[3:] == ["theta_wrt_theta0", "omega_wrt_theta0"]

@@ -14,16 +14,22 @@ from ..loads.along_motion import members_of
 from ..loads.load import Load, OverTheta, OverY
 from ..loads.resolve import split
 from ..mechanism.catalogue import quantity
-from ..mechanism.inputs import INPUTS
+from ..mechanism.inputs import INPUTS, Input
 from ..mechanism.quantity_units import SI
 from ..mechanism.read import read_array
 from ..support.forks import IMPORTS
+from ..support.shown import printed, with_unit
 from ..units.parse import factor_to_si
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[np.float64]
+STARTS = {  # what a motion has beside the inputs of the mechanism
+    "theta0": INPUTS["theta"],
+    "omega_start": INPUTS["omega"],
+    "torque": Input("T_in", "N*m", "torque on the crank"),
+}
 BESIDE = 2.0**-44  # rad: more than what is rounded of the angle of a jump, and nothing in a picture
 
 
@@ -129,15 +135,38 @@ def dataset_of_motion(result: Any, over: str) -> "xr.Dataset":
         raise ValueError(f"over = {over!r}: a motion has its histories over 't' or over 'theta'")
     if over == "theta" and designs:
         raise ValueError("over = 'theta': each of these designs has its own angles; give over='t'")
-    names = ["design"] if len(designs) == 1 else [f"design_{k}" for k in range(len(designs))]
     units = getattr(result, "system", None) or SI
+    coordinates = _designs(getattr(result, "inputs", {}), designs, units)
+    names = list(coordinates)
     histories = {
         name: ((*names, over), np.asarray(values), _attributes(name, units))
         for name, values in result.items()
         if name not in ("t", over) and np.shape(values) == (*designs, t.size)
     }
     coordinate = (over, np.asarray(result[over]), _attributes(over, units))
-    return xarray.Dataset(histories, coords={over: coordinate})
+    return xarray.Dataset(histories, coords={**coordinates, over: coordinate})
+
+
+def _designs(inputs: Mapping[str, Any], shape: tuple[int, ...], units: Any) -> dict[str, Any]:
+    """A coordinate for each axis of designs: the input that differs along it, or texts where several do."""
+    arrays = {}
+    for name, value in inputs.items():
+        row = STARTS.get(name) or INPUTS[name]
+        if value is not None and not callable(value) and np.ndim(value):
+            arrays[name] = np.array(units.of(row.name).shown(read_array(row, value)), ndmin=len(shape))
+    result: dict[str, Any] = {}
+    for axis, size in enumerate(shape):
+        along = {n: a.reshape(-1) for n, a in arrays.items() if a.shape[axis] == a.size == size}
+        spelled = {n: printed(units.of(STARTS[n].name if n in STARTS else n).unit) for n in along}
+        if len(along) == 1:
+            ((name, values),) = along.items()
+            result[name] = (name, values, {"units": spelled[name]})
+            continue
+        name = "design" if len(shape) == 1 else f"design_{axis}"
+        words = [[with_unit(f"{n} = {x:.6g}", spelled[n]) for x in a] for n, a in along.items()]
+        texts = [", ".join(parts) for parts in zip(*words, strict=True)] or [*map(str, range(size))]
+        result[name] = (name, texts)
+    return result
 
 
 def _attributes(name: str, units: Any) -> dict[str, Any]:

@@ -171,7 +171,7 @@ def drawn(ax: Any, horizontal: NDArray[np.float64], array: "xr.DataArray", besid
     """The curves of (family, over) or (over); of a family with a legend, beside them or among them."""
     values = np.atleast_2d(array.values)
     family = array[array.dims[0]] if array.ndim > 1 else None
-    labels = [None] * len(values) if family is None else [f"{x:.6g}" for x in shown(family)]
+    labels = [None] * len(values) if family is None else _labels(family)
     lines = [
         ax.plot(horizontal, row, color=colour, linewidth=1.6, label=label)[0]
         for label, row, colour in zip(labels, values, colours(len(labels)), strict=True)
@@ -179,6 +179,11 @@ def drawn(ax: Any, horizontal: NDArray[np.float64], array: "xr.DataArray", besid
     if family is not None and beside is not None:
         _explain(ax, family, len(lines), beside)
     return lines
+
+
+def _labels(family: "xr.DataArray") -> list[str]:
+    """The texts of a family, or its values."""
+    return [*family.values] if family.dtype.kind == "U" else [f"{x:.6g}" for x in shown(family)]
 
 
 def _explain(ax: Any, family: "xr.DataArray", count: int, beside: bool) -> None:
@@ -192,6 +197,6 @@ def _explain(ax: Any, family: "xr.DataArray", count: int, beside: bool) -> None:
         from matplotlib.cm import ScalarMappable
         from matplotlib.colors import ListedColormap, Normalize
 
-    values = shown(family)
+    values = np.arange(count) if family.dtype.kind == "U" else shown(family)
     scale = Normalize(float(values.min()), float(values.max()))
     ax.figure.colorbar(ScalarMappable(scale, ListedColormap(colours(256))), ax=ax, label=title)

@@ -132,5 +132,7 @@ def simulate(
         return motion
     motors = torque.numbers.values() if isinstance(torque, Motor) else ()
     if any(map(is_array, (*inputs.values(), *starts.values(), *motors))):
-        return simulate_rows(ask, inputs, starts, instants, threads)
+        result: Simulation = simulate_rows(ask, inputs, starts, instants, threads)
+        result.inputs = {**inputs, **starts}
+        return result
     return one_motion(ask, inputs, starts, instants)

@@ -18,7 +18,7 @@ class Answer(dict[str, Any]):
             the answer that gives them when they are first looked at
     codes   the enumeration of its status codes, whose texts the repr has
     system  of an answer of a machine: its unit system; None for SI units
-    inputs  of `evaluate`: what it was asked for with, by name
+    inputs  of `evaluate`, and of `simulate` of many designs: what it was asked for with, by name
     """
 
     inputs: Mapping[str, Any] = MappingProxyType({})
