@@ -10,6 +10,7 @@ import os
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
+from textwrap import wrap
 
 import sympy
 
@@ -209,17 +210,14 @@ def _head(group: Group, module: Module, digest: str) -> str:
     plain = module.forms.plain
     size = f"{len(module.forms.stable.lines)} operations"
     size += f", {len(plain.lines)} where margins are wide" if plain else ""
-    rows = [f"    {s.name:10} {f'[{s.unit}] ' if s.unit != '1' else ''}{s.meaning}" for s in module.inputs]
-    branch = "    branch     +1 or -1: the assembly"
+    units = {s.name: f" [{s.unit}]" if s.unit != "1" else "" for s in module.inputs}
+    rows = [f"{s.name}{units[s.name]} {s.meaning}" for s in module.inputs]
+    inputs = wrap("Inputs: " + "; ".join([*rows, "branch +1 or -1, the assembly"]) + ".", 96)
     what = f"{group.what[0].upper()}{group.what[1:]}."
-    return "\n".join([_banner(what, digest, size), _USE, "", *rows, branch, ""])
+    return "\n".join([_banner(what, digest, size), _USE, *inputs, ""])
 
 
-_USE = """    point(...)      numbers to a tuple of OUTPUTS, also inside of an @njit function
-    evaluate(...)   arrays that broadcast, to a dict of arrays
-    grid(...)       one dimension for each input of one dimension, in the order of the inputs
-
-What has no value is NaN. A line of formulas says: unit | meaning | paper equation. SI units and radians:"""
+_USE = """SI units, radians; what has no value is NaN. A line of formulas: unit | meaning | paper equation."""
 
 
 def _meaning(derivation: Derivation, name: str) -> tuple[str, str]:

@@ -9,7 +9,7 @@ import pytest
 
 import desaxe
 from desaxe.compiler.builder import HELPERS, module_text, source_of, with_sources
-from desaxe.compiler.languages.numba.library import FRONT, SPELLINGS
+from desaxe.compiler.languages.numba.library import SOURCES
 from desaxe.scenes.export.numba_module import FUNCTIONS, STEPS
 
 SOURCE = '''"""Some functions."""
@@ -102,7 +102,7 @@ def test_a_text_that_two_groups_have_stands_once(file):
     assert module_text("A module.", group, group) == module_text("A module.", group)
 
 
-@pytest.mark.parametrize("path", [FRONT, FUNCTIONS, STEPS, SPELLINGS], ids=lambda path: path.name)
+@pytest.mark.parametrize("path", [SOURCES, FUNCTIONS, STEPS], ids=lambda path: path.name)
 def test_no_statement_of_a_file_is_lost(path):
     tree = ast.parse(path.read_text(encoding="utf-8"))
     kept = [node for node in tree.body if not isinstance(node, (ast.ImportFrom, ast.If, ast.Expr))]
@@ -110,7 +110,7 @@ def test_no_statement_of_a_file_is_lost(path):
     assert list(map(ast.dump, result)) == list(map(ast.dump, kept))
 
 
-@pytest.mark.parametrize("path", [FRONT, FUNCTIONS, STEPS, SPELLINGS], ids=lambda path: path.name)
+@pytest.mark.parametrize("path", [SOURCES, FUNCTIONS, STEPS], ids=lambda path: path.name)
 def test_a_source_can_be_imported_as_it_stands(path):
     package = Path(desaxe.__file__).parent
     module = ".".join(("desaxe", *path.relative_to(package).with_suffix("").parts))

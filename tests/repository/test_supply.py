@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[2]
 # modules of numba, which unroll loops over tuples, is made of their constant lines.
 RUNS_TEXT = {
     "generated/_helpers.py",
-    "src/desaxe/compiler/languages/numba/sources/front.py",
+    "src/desaxe/compiler/languages/numba/sources.py",
     "src/desaxe/simulation/loops/torque.py",
     "src/desaxe/runtime/native_calls.py",
     "src/desaxe/compiler/languages/arrays.py",

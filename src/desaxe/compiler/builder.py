@@ -20,7 +20,7 @@ from .text import INDENT, WIDTH
 HELPERS = Path(__file__).with_name("helpers.py")  # in plain Python, what spellings call
 MATH = dict.fromkeys(MATH_NAMES, "math")
 _FUTURE = "from __future__ import annotations"
-_STANDARD = ("concurrent.futures", "math", "os", "threading", "typing")
+_STANDARD = ("concurrent.futures", "inspect", "math", "os", "threading", "typing")
 _IMPORT = re.compile(r"^(?: {4})?from ([^.\s]\S*) import (?:\(([^)]*)\)|(.*))$", re.MULTILINE)
 # A function with its decorators, or an assignment; comments above go with it.
 _STATEMENT = re.compile(
@@ -29,7 +29,6 @@ _STATEMENT = re.compile(
 _SILENT = re.compile(r'""".*?"""|#[^\n]*', re.DOTALL)
 _WORD = re.compile(r"[.=@]?[^\W\d]\w*(?:\(|\.py_func)?")
 _ASKED = ("{}(", "={}", "@{}", "{}.py_func")
-_MAKERS = frozenset(("@intrinsic", "njit("))
 
 
 class Statement(NamedTuple):
@@ -98,7 +97,7 @@ def with_sources(
 ) -> Parts:
     """The parts, behind what they need of files, which is taken from the first file that has it.
 
-    jit       goes before functions of files without a decorator, but for those that make compiled ones
+    jit       goes before functions of the last file
     imports   the module of names that the parts themselves use
     """
     sources = [source_of(file) for file in files]
@@ -114,9 +113,9 @@ def with_sources(
         needed |= more
         left += [statement.words for statement in more]
     chosen = [statement for statement in dict.fromkeys(known.values()) if statement in needed]
-    bare = {each for each in chosen if each.text.startswith("def ") and not _MAKERS & each.words}
+    bare = {each for each in chosen if each.function and each in sources[-1].statements}
     texts = [jit + each.text if each in bare else each.text for each in chosen]
-    words = words.union(words_of(jit) if bare else (), *(each.words for each in chosen))
+    words = words.union(words_of(jit) if jit and bare else (), *(each.words for each in chosen))
     modules = {name: module for source in sources for name, module in source.imports.items()}
     return Parts((*texts, *parts), words, modules | dict(imports))
 

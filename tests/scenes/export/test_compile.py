@@ -1,5 +1,6 @@
 """Compiled modules: they run without desaxe, give what desaxe gives, and are the same every time."""
 
+import inspect
 import math
 import os
 import pickle
@@ -60,7 +61,7 @@ SCENES = {
 
 SEARCHED = {**SMALL, "peak": [{"quantity": "a_C", "kind": kind} for kind in ("absmax", "max")]}
 ALLOWED = {
-    "__future__", "concurrent.futures", "math", "os", "threading", "typing", "numba", "numba.core",
+    "__future__", "concurrent.futures", "inspect", "math", "os", "threading", "typing", "numba", "numba.core",
     "numba.extending", "numpy",
 }  # fmt: skip
 # Runs in a process of its own, where importing desaxe fails.
@@ -330,9 +331,10 @@ def test_every_number_of_a_table_is_in_the_digest(to, tmp_path):
 
 
 def test_fixed_values_are_folded_in(tmp_path):
-    text = dx.compile(SCENES["one_axis"], tmp_path / "m.py").read_text(encoding="utf-8")
+    path = dx.compile(SCENES["one_axis"], tmp_path / "m.py")
+    text = path.read_text(encoding="utf-8")
     assert "def point(theta):" in text
-    assert "def evaluate(theta, out=None, threads=None):" in text
+    assert str(inspect.signature(imported(path).evaluate)) == "(theta, out=None, threads=None)"
     assert "ec" not in text[text.index("def stable(theta, sin_theta, cos_theta, branch):") :].split()
     assert "AB *" not in text
 

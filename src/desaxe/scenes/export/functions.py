@@ -45,7 +45,7 @@ def spaced(first, rest, step, num):
 
 def with_axes(axes, inputs):
     """The axes, those that are given in their places: arrays of one dimension in the same order."""
-    given = columns_of({n: value for n, value in inputs.items() if value is not None}, axes, ())
+    given = columns_of({n: value for n, value in inputs.items() if value is not None}, axes)
     for name, column in given.items():
         if column.ndim > 1:
             raise ValueError(f"{name}: expected a number or one dimension, got the shape {column.shape}")
@@ -147,10 +147,14 @@ def extremum(search, kind, ends, axes, given, inputs, slopes):
         columns[name] = broadcast_to(array(value).reshape(along), shape).flatten()
     require_turning(columns, *ends)
     size, nodes = prod(shape), nodes_between(*ends)
-    designs = tuple(columns[name] if name in columns else zeros(size) for name in inputs)
-    turns, theta = empty((2, nodes.size)), empty(size)
-    out = tuple(empty((1 + max([1, *slopes.values()]), size)))
-    sines(nodes, turns[0], turns[1])
+    designs, theta, out = (
+        zeros((len(inputs), size)),
+        empty(size),
+        empty((1 + max([1, *slopes.values()]), size)),
+    )
+    for row, name in zip(designs, inputs, strict=True):
+        row[:] = columns.get(name, 0.0)
+    turns = sine_cosine(nodes)
 
     def work(first, last):
         search(kind, nodes, turns, designs, first, last, theta, out)

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ...compiler.builder import MATH, function_text, quoted, with_sources
-from ...compiler.languages.numba.library import grid_text
 from ...compiler.languages.protocol import Module
 from ..content import Content
 from ..scene import Scene
@@ -47,8 +46,6 @@ _FIXED = '''def run():
 def _run(module: Module, content: Content, axes: Mapping[str, Sequence[float]]) -> str:
     """`run()`: the results over the scene's axes, or over others, reduced where the scene says so."""
     fused = content.fused
-    inputs = '{**axes, "threads": threads, **FIXED}' if module.fixed else '{**axes, "threads": threads}'
-    grid = grid_text(module, inputs)
     if fused is not None:
         ordered = [*(n for n in axes if n != fused.axis), fused.axis]
         how = f"{fused.axis} reduced. `_skipped`: how many points along it have no value."
@@ -56,7 +53,7 @@ def _run(module: Module, content: Content, axes: Mapping[str, Sequence[float]]) 
             f"axes = with_axes({{name: AXES[name] for name in {quoted(tuple(ordered))}}}, locals())",
             "",
             "def values(axes):",
-            f"    return {grid}",
+            "    return grid(threads=threads, **axes)",
             "",
             f"return reduced(values, axes, {quoted(fused.axis)}, {quoted(tuple(fused.kinds))})",
         ]
@@ -68,7 +65,7 @@ def _run(module: Module, content: Content, axes: Mapping[str, Sequence[float]]) 
         }
         body = [
             "axes = with_axes(AXES, locals())",
-            f"out = {grid}",
+            "out = grid(threads=threads, **axes)",
             *(
                 f'out["{name}"] = fmax.reduce(out["{name}"], axis={along}, initial=nan)  # all the same'
                 for name, along in indices.items()

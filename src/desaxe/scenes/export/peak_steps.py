@@ -29,17 +29,16 @@ def inside(part, slope_a, slope_b):
     return (0.25, 0.5, 0.75)[part]
 
 
-def search(curve, kind, nodes, turns, designs, first, last, theta, out):
-    """The extreme value of each design: its angle; value, slope and derivatives there.
+def search(curve, kind, nodes, turns, designs, first, last, theta):
+    """The angle of the extreme value of each design.
 
-    `curve` gives these of an angle, its sine and cosine, and a design. Between nodes that may hold more than
-    the best one the slope's root is searched for by secants in a bracket.
+    `curve` gives value and slope of an angle, its sine and cosine, and a design. Between nodes that may hold
+    more than the best one the slope's root is searched for by secants in a bracket.
     """
     value, slope = empty(nodes.size), empty(nodes.size)
     for i in range(first, last):
-        design = values_at(designs, i)
         for j in range(nodes.size):
-            values = curve(nodes[j], turns[0, j], turns[1, j], *design)
+            values = curve(nodes[j], turns[0][j], turns[1][j], designs, i)
             value[j], slope[j] = values[0], values[1]
         best, theta[i], at_node = -inf, nan, True
         for j in range(nodes.size):
@@ -54,17 +53,16 @@ def search(curve, kind, nodes, turns, designs, first, last, theta, out):
                 low, high, after = end, nodes[j + 1], slope[j + 1]
                 if part < 3:
                     high = nodes[j] + inside(part, slope[j], slope[j + 1]) * width
-                    after = curve(high, *sin_cos(high), *design)[1]
+                    after = curve(high, *sin_cos(high), designs, i)[1]
                 if (before > 0.0) != (after > 0.0) and before == before and after == after:
-                    x = stationary(curve, design, low, high, before, after)
-                    new = score(kind, curve(x, *sin_cos(x), *design)[0])
+                    x = stationary(curve, designs, i, low, high, before, after)
+                    new = score(kind, curve(x, *sin_cos(x), designs, i)[0])
                     if new > best + 1e-14 * abs(best) or (at_node and new >= best - 1e-14 * abs(best)):
                         best, theta[i], at_node = max(new, best), x, False
                 end, before = high, after
-        store(out, i, curve(theta[i], *sin_cos(theta[i]), *design))
 
 
-def stationary(curve, design, low, high, before, after):
+def stationary(curve, designs, i, low, high, before, after):
     """The root of the slope in a bracket: the secant's, or the middle where that leaves it or is slow."""
     last, last_slope, x, slope, size = low, before, high, after, high - low
     for _ in range(100):
@@ -72,7 +70,7 @@ def stationary(curve, design, low, high, before, after):
         if not (low <= new <= high and abs(new - x) <= 0.5 * size):
             new = 0.5 * (low + high)
         last, last_slope, size, x = x, slope, abs(new - x), new
-        slope = curve(x, *sin_cos(x), *design)[1]
+        slope = curve(x, *sin_cos(x), designs, i)[1]
         if (slope > 0.0) == (before > 0.0):
             low = x
         else:

@@ -3,13 +3,14 @@
 import ast
 import platform
 import re
+from importlib import import_module
 
 import numba
 import numpy as np
+import pytest
 
 from desaxe.compiler.languages.numba.language import Numba
 from desaxe.compiler.program import Line, Program
-from desaxe.generated import motion
 from tests.compiler.languages.modules import module, written
 from tests.compiler.languages.tools import imported
 
@@ -49,12 +50,14 @@ def test_a_loop_of_many_outputs_runs_several_points_at_once(tmp_path):
     assert _roots_of_vectors(many.fill) >= count
 
 
-def test_both_forms_run_several_points_at_once():
-    """The stable lines too, in a loop of their own."""
-    motion.evaluate([0.0, 1.0], 0.0, 0.1, 0.3, 1.0)
-    again = numba.njit(error_model="numpy")(motion.fill.py_func)  # what the cache has cannot be looked at
-    again.compile(motion.fill.signatures[0])
-    assert _roots_of_vectors(again) >= 2
+@pytest.mark.parametrize("group", ["motion", pytest.param("sensitivities", marks=pytest.mark.thorough)])
+def test_both_forms_run_several_points_at_once(group):
+    """The stable lines too, in a loop of their own, of however many outputs."""
+    group = import_module(f"desaxe.generated.{group}")
+    group.evaluate([0.0, 1.0], 0.0, 0.1, 0.3, 1.0)
+    again = numba.njit(error_model="numpy")(group.fill.py_func)  # what the cache has cannot be looked at
+    again.compile(group.fill.signatures[0])
+    assert _roots_of_vectors(again) >= 4
 
 
 def _roots_of_vectors(function):
