@@ -64,7 +64,9 @@ def test_generated_imports_numpy_numba_and_the_standard_library_only():
     assert not [
         pair
         for pair in imports_of("desaxe.generated")
-        if not is_in(pair[1], "math", "os", "concurrent", "numpy", "numba", "desaxe.generated._helpers")
+        if not is_in(
+            pair[1], "math", "os", "inspect", "concurrent", "numpy", "numba", "desaxe.generated._helpers"
+        )
     ]
 
 
