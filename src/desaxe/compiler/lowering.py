@@ -21,9 +21,9 @@ from math import inf
 from sys import float_info
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..support.forks import IMPORTS
 from .forms import in_two_forms, parted
 from .kernel import Kernel, tabulate
+from .passes.double_double import double_double
 from .passes.fuse import fuse_products
 from .passes.guard import guard_inputs
 from .passes.trigonometry import Trigonometry, expand_trigonometry
@@ -80,9 +80,6 @@ def guarded_pairs(
     program: Program, varying: Iterable[str], limits: Limits, trigonometry: "DoubleTrigonometry"
 ) -> Program:
     """Stages 3 and 4, in double-double arithmetic."""
-    with IMPORTS:
-        from .passes.double_double import double_double
-
     return double_double(guard_inputs(program, tuple(varying), *limits), trigonometry)
 
 

@@ -12,11 +12,13 @@ from ..definitions.tables import text_of
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.own import Register, register
+from ..mechanism.program import digest
 from ..mechanism.quantity_units import SI, UnitSystem, unit_of
 from ..mechanism.status import PointStatus
 from ..support.extras import explained
 from ..support.forks import IMPORTS, imported
 from ..support.signals import finished
+from ..support.version import version
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -67,10 +69,6 @@ def input_attributes(name: str) -> dict[str, str]:
 @cache
 def source() -> str:
     """The source of a dataset: version of desaxe and digest of its derivation."""
-    with IMPORTS:
-        from ..mechanism.program import digest
-        from ..support.version import version
-
     return f"desaxe {version()}, derivation {digest()[:16]}"
 
 

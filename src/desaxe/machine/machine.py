@@ -9,12 +9,15 @@ from ..loads.elements import MakeDamper, MakeOverV, MakeSpring
 from ..loads.motors import MakeKloss, MakeOverOmega
 from ..loads.resolve import settled
 from ..loads.tabulated import MakeOverStroke, MakeOverTheta, MakeOverY
+from ..mechanism.catalogue import has
 from ..mechanism.inputs import INPUTS, is_good
 from ..mechanism.keywords import unknown_input
 from ..mechanism.messages import errors_in, named
 from ..mechanism.own import Definition
+from ..mechanism.program import program_of
 from ..mechanism.quantity_units import SI, UnitSystem
 from ..mechanism.slips import warn_of_slips
+from ..mechanism.spelling import meant
 from ..runtime.request import MachineSpeed, as_number, check_common
 from ..support.forks import IMPORTS
 from .arguments import in_si
@@ -57,10 +60,6 @@ class NoAttributeError(AttributeError):
 
 def _as_quantity(name: Any) -> str:
     """The hint for a quantity that was taken for an input or a method; empty for any other name."""
-    with IMPORTS:
-        from ..mechanism.catalogue import has
-        from ..mechanism.program import program_of
-
     if not isinstance(name, str) or name in INPUTS or not has(name):
         return ""
     at = ", theta=..." if "theta" in program_of((name,)).inputs else ""
@@ -68,9 +67,6 @@ def _as_quantity(name: Any) -> str:
 
 
 def _meant(word: Any, allowed: Iterable[str]) -> str:
-    with IMPORTS:
-        from ..mechanism.spelling import meant
-
     return next(iter(meant(word, allowed)), "")
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ..compiler.lowering import for_loops, nest
 from ..compiler.passes.differentiate import RULES, SIGNED, Chain
+from ..compiler.passes.double_double import double_double
 from ..compiler.passes.pipeline import optimise
 from ..compiler.passes.slicing import keep_outputs
 from ..compiler.program import Line, Program
@@ -25,7 +26,7 @@ from ..mechanism.program import Variant
 from ..runtime.executor import CompiledKernel
 from ..runtime.native_calls import bind_kernel, ufunc_of
 from ..runtime.specialise import specialise
-from ..support.forks import IMPORTS, ForkSafeLock
+from ..support.forks import ForkSafeLock
 from ..support.recent import Recent
 from ..support.signals import finished
 from .nodes import Array
@@ -78,9 +79,6 @@ def programs_of(search: Search) -> SearchPrograms:
 
     finish = (value, slope, *gradient)
     if search.extended:
-        with IMPORTS:
-            from ..compiler.passes.double_double import double_double
-
         last = double_double(keep_outputs(whole, finish), double_constants())
     else:
         last = prepared(finish)

@@ -6,13 +6,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..support.deadline import Deadline
-from ..support.forks import IMPORTS
 from .checks import check_inertia, design_values, drive_of, model_of, scalar
 from .drive import LOADED
 from .history import FORCES, integrated
 from .march import March, Settings
 from .model import Model
 from .result import Simulation
+from .slopes import add_slopes
 from .torque_derivative import TorqueDerivative
 
 
@@ -61,8 +61,5 @@ def in_time(
         run.to_the_end()
         result = integrated(run, ask.names, times, known)
     if ask.wrt:
-        with IMPORTS:
-            from .slopes import add_slopes
-
         add_slopes(result, run, ask.wrt, {**known, **loads})
     return result

@@ -35,13 +35,14 @@ from ...runtime.kernels import KernelKey, kernel_of
 from ...runtime.request import Request
 from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available
-from ...support.forks import IMPORTS
 from ...sweeps.request import sweep_of
 from ..content import Content
+from ..document.render import terminal
 from ..parts.grid import plan_of_grid, request_of
 from ..reading.values import Value
 from ..scene import Scene
 from ..scene import scene as scene_of
+from .plan_text import plan_sections
 
 PROMISES = {
     "standard": "at most 8 ulp x (1 + the sum of the condition numbers), wherever it can be assembled",
@@ -91,10 +92,6 @@ class RunPlan:
         return json.dumps(self.data, indent=2)
 
     def __str__(self) -> str:
-        with IMPORTS:
-            from ..document.render import terminal
-            from .plan_text import plan_sections
-
         return terminal(self.data["title"] or "Scene", [*plan_sections(self.data)])
 
 
