@@ -135,6 +135,15 @@ def test_one_slider_and_arrays():
     grid = four.grid(["T_in", "a_C[1]"], theta=theta, AB=[0.045, 0.05], omega=130.0)
     np.testing.assert_allclose(grid.T_in.sel(AB=0.045), answer["T_in"], rtol=1e-14)
     assert grid["a_C[1]"].units == "m/s^2"
+    taken = ["absmax", "rms", ("at", 1.5, "T_in")]
+    reduced = four.grid(["T_in"], theta=theta, AB=[0.045, 0.05], omega=130.0, reduce={"theta": taken})
+    np.testing.assert_array_equal(reduced.T_in_absmax, abs(grid.T_in).max("theta"))
+    np.testing.assert_allclose(reduced.T_in_rms, (grid.T_in**2).mean("theta") ** 0.5, rtol=1e-14)
+    np.testing.assert_array_equal(reduced["T_in_at_1.5"], grid.T_in[1])
+    assert reduced.T_in_absmax_theta.values[0] in theta
+    how = {"theta": theta, "AB": [0.045, 0.05], "omega": 130.0}
+    mean = four.grid("T_in", **how, reduce={"theta": "max", "AB": "mean"})
+    np.testing.assert_allclose(mean.T_in_max_mean, grid.T_in.max("theta").mean(), rtol=1e-14)
 
 
 def pair(machine, call="evaluate", name="T_in", **inputs):

@@ -8,13 +8,12 @@ import numpy as np
 
 from ..design.turn.cycle import Cycle, Motion
 from ..design.turn.turn import Turn
-from ..mechanism.catalogue import has
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import parts
 from ..mechanism.read import read
 from ..support.computed import computed_once
 from ..support.panels import Array
-from .sums import STATE, SliderSums, indexed, state_of
+from .sums import STATE, SliderSums, state_of
 
 NEAR = 1e-9  # rad: an angle that is an edge
 SAMPLES = 64  # of a turn, for the size of what a slider adds
@@ -73,11 +72,17 @@ class ShaftCycle(Cycle):
         own, firing = self.own[k], self.sliders.members[k].firing
         motion = motion or self._motion(other)
         inputs = {n: v for n, v in other.items() if n not in STATE}
-        here = Cycle.edges(own, _bases(names), lambda theta: motion(theta + firing), **inputs).ravel()
+        names = self._names_of(k, names)
+        here = Cycle.edges(own, names, lambda theta: motion(theta + firing), **inputs)
         low, high = self.ends
         first = low + (here[np.isfinite(here)] + firing - low) % own.angle
         every = first[:, None] + own.angle * np.arange(np.ceil((high - low) / own.angle))
         return np.asarray(every[every <= high])
+
+    def _names_of(self, k: int, names: Sequence[str]) -> list[str]:
+        """The quantities of a slider behind names of the shaft."""
+        every = (self.sliders.quantity_terms(parts(name)[0]) for name in names)
+        return [*dict.fromkeys(q for terms in every for one, q in terms if one == k)]
 
     def _motion(self, other: Mapping[str, Any]) -> Motion:
         """The speed and acceleration of the shaft under its law, or as they are given."""
@@ -99,7 +104,7 @@ class ShaftCycle(Cycle):
             mine = free & (np.abs(angles[..., None] - edges).min(-1, initial=np.inf) < NEAR)
             free &= ~mine
             places = (angles - self.sliders.members[k].firing).reshape(1, -1)
-            moved = Cycle.moves(own, _bases(names), places)
+            moved = Cycle.moves(own, self._names_of(k, names), places)
             result = {name: shift.reshape(angles.shape) for name, shift in moved.items()}
             result |= {f"{name}[{k}]": np.ones(angles.shape) for name in ("phase", "bank")}
             for name, shift in result.items():
@@ -152,9 +157,3 @@ class ShaftTurn(Turn, ShaftCycle):
     def samples(self) -> Array:
         """Angles at which the size of what a slider adds is seen."""
         return np.linspace(*self.ends, SAMPLES * self.turns)
-
-
-def _bases(names: Sequence[str]) -> list[str]:
-    """The quantities of a slider behind names of the shaft, and the torque: loads and friction touch it."""
-    bases = [indexed(parts(name)[0])[0] for name in names]
-    return list(dict.fromkeys(["T_in", *(base for base in bases if has(base))]))

@@ -11,6 +11,7 @@ from .cycle import ShaftTurn
 SIGNS = {"max": (1.0,), "min": (-1.0,), "absmax": (1.0, -1.0)}
 Values = Callable[[Sequence[str], Array, Any], dict[str, Array]]
 JUMP = 1e-9  # of the largest value: a change at one angle that is a jump
+BESIDE = 1e-13  # of 1 + theta: on one side of an edge, for derivatives
 
 
 def extremes_of(
@@ -64,10 +65,9 @@ def _at_edge(
     panel, end = min(sides, key=lambda one: abs(ends[one] - top))
     jumps = len(sides) == 2 and abs(np.subtract(*(ends[one] for one in sides))) > JUMP * abs(top)
     along = f"{name}_wrt_theta"
-    here = resolved(
-        lambda x, row: turn.values([*by.values(), along], x, row), panels.edges[panel : panel + 2]
-    )
-    slopes = {n: here.ends(v)[-1 if end else 0, end] for n, v in here.values.items()}
+    inside = min(BESIDE * (1.0 + abs(theta)), 0.5 * float(np.diff(panels.edges)[panel]))
+    beside = np.array([theta + (1 - 2 * end) * inside])
+    slopes = {n: v[0] for n, v in turn.values([*by.values(), along], beside).items()}
     moves = turn.moves([name], np.array([theta]))
     own = {n: slopes[n] + slopes[along] * moves[p][0] if p in moves else slopes[n] for p, n in by.items()}
     return (2 * (1 - end) - 1 if jumps else 0), own

@@ -6,8 +6,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..evaluation.labels import attributes, labelled
+from ..evaluation.labels import attributes, input_attributes, labelled
 from ..evaluation.points import ALWAYS
+from ..evaluation.reductions.argument import (
+    Reductions,
+    chain_name,
+    extremes_at_end,
+    names_reduced,
+    reductions_of,
+)
+from ..evaluation.reductions.kinds import field_of, folded
 from ..mechanism.catalogue import quantity
 from ..mechanism.names import parts
 from ..mechanism.own import using
@@ -101,12 +109,15 @@ class Sliders(SliderSums):
         with using(self.definitions):
             return in_time(ask, model, start, times, {"sliders": here}, {})
 
-    def grid(self, names: Any, inputs: Mapping[str, Any], accuracy: Any, **options: Any) -> "xr.Dataset":
-        """`desaxe.grid` of the shaft: the outer product of its inputs."""
+    def grid(
+        self, names: Any, inputs: Mapping[str, Any], accuracy: Any, reduce: Any, **options: Any
+    ) -> "xr.Dataset":
+        """`desaxe.grid` of the shaft: the outer product of its inputs, or what is taken of it."""
         for option, value in options.items():
             if value is not None:
-                raise TypeError(f"{option}= is not there for a crankshaft: reduce or store the Dataset")
-        requested = tuple(dict.fromkeys([*((names,) if isinstance(names, str) else several(names)), *ALWAYS]))
+                raise TypeError(f"{option}= is not there for a crankshaft: store the Dataset")
+        requested = [*((names,) if isinstance(names, str) else several(names))]
+        requested = [*dict.fromkeys([*requested, *(ALWAYS if reduce is None else names_reduced(reduce))])]
         axes = {n: v if callable(v) else number(n, v) for n, v in inputs.items() if v is not None}
         arrays = {n: np.asarray(v, float) for n, v in axes.items() if not callable(v) and n != "branch"}
         dims = [n for n, array in arrays.items() if array.ndim]
@@ -116,8 +127,35 @@ class Sliders(SliderSums):
             axes[n] = arrays[n].reshape([-1 if n == d else 1 for d in dims])
         result = self.evaluate(requested, axes, accuracy)
         with using(self.definitions):
-            rows = {n: (dims, result[n], described(n)) for n in requested}
-            return labelled(rows, arrays, 1, accuracy)
+            if reduce is None:
+                rows = {n: (dims, result[n], described(n)) for n in requested}
+                return labelled(rows, arrays, 1, accuracy)
+            reductions = reductions_of(reduce, dims, requested)
+            kept = {n: array for n, array in arrays.items() if n not in reductions.axes}
+            rows = {}
+            for n in requested:
+                rows |= _taken(n, result[n], dims, reductions, arrays)
+            for one in reductions.at:
+                there = self.evaluate(one.name, {**axes, reductions.axes[0]: one.place}, accuracy)
+                at = np.take(there, 0, dims.index(reductions.axes[0]))
+                rows[one.variable] = [n for n in dims if n in kept], at, described(one.name)
+            return labelled(rows, kept, 1, accuracy, requested)
+
+
+def _taken(
+    name: str, values: Any, dims: Sequence[str], reductions: Reductions, axes: Mapping[str, Any]
+) -> dict[str, Any]:
+    """The rows of a Dataset for what is taken of a quantity along some axes of a grid."""
+    rows: dict[str, Any] = {}
+    for chain in reductions.chains(name):
+        field = field_of(tuple(dims), values)
+        for along, kind in chain:
+            field = folded(field_of(field.dims, field.values, field.places), along, kind, axes)
+        variable = chain_name(name, chain)
+        rows[variable] = field.dims, field.values, {**described(name), "quantity": name}
+        for axis in extremes_at_end(chain):
+            rows[f"{variable}_{axis}"] = field.dims, field.places[axis], input_attributes(axis)
+    return rows
 
 
 def described(name: str) -> dict[str, Any]:

@@ -279,7 +279,7 @@ class SliderSums:
     def terms(self, name: str, slopes: Mapping[str, Any]) -> Terms:
         """A quantity or sensitivity as a sum; `slopes`: of the speed by theta, omega0, alpha or omega."""
         base, parameters = parts(name)
-        terms = self._quantity(base)
+        terms = self.quantity_terms(base)
         if len(parameters) > 1 and any(indexed(p)[0] in (*STATE, *POSITION, *GRAVITY) for p in parameters):
             raise ValueError(f"{name!r}: this derivative is not derived")
         for parameter in parameters:
@@ -290,7 +290,7 @@ class SliderSums:
             terms = result
         return terms
 
-    def _quantity(self, base: str) -> Terms:
+    def quantity_terms(self, base: str) -> Terms:
         """A quantity without parameters."""
         name, index = indexed(base)
         members = range(len(self.members))
@@ -301,7 +301,7 @@ class SliderSums:
                 raise ValueError(f"{base}: of sliders along a shaft: give Crankshaft spacing= or position=")
             return {
                 (k, q): share.times(self.members[k].position)
-                for (k, q), share in self._quantity(COUPLES[name]).items()
+                for (k, q), share in self.quantity_terms(COUPLES[name]).items()
                 if index in (None, k)
             }
         if index is not None:

@@ -80,7 +80,7 @@ def grid(
     So do pandas Series whose index has a name, along that. Where such an axis is reduced, the place of an
     extreme is the position along it, from 0.
 
-    `sliders` are filled in by a `Crankshaft`: without `reduce`, `chunks` and `out`.
+    `sliders` are filled in by a `Crankshaft`: without `chunks`, `out` and functions of a design.
 
         dx.grid(["a_C"], theta=th, ec=ecs, AB=.125, BC=bcs, omega0=157.08).a_C.max("theta")
 

@@ -57,18 +57,18 @@ class FunctionOfMotion(OfMotion):
     derivatives: tuple[Callable[..., Any], ...] | None = None
     centre: str = ""
 
-    @property
-    def over(self) -> str:  # type: ignore[override]
+    @computed_once
+    def over(self) -> str:
         """The names of the arguments."""
         return ", ".join(self.arguments)
 
-    @property
-    def needs(self) -> tuple[str, ...]:  # type: ignore[override]
+    @computed_once
+    def needs(self) -> tuple[str, ...]:
         """The columns of its arguments, and the dead centre."""
         return (*self.arguments, self.centre) if self.centre else self.arguments
 
-    @property
-    def has_slope(self) -> bool:  # type: ignore[override]
+    @computed_once
+    def has_slope(self) -> bool:
         """True where the derivatives are known."""
         return self.derivatives is not None
 
@@ -136,13 +136,13 @@ class OverColumn(OfMotion):
 
     table: Table
 
-    @property
-    def over(self) -> str:  # type: ignore[override]
+    @computed_once
+    def over(self) -> str:
         """The column."""
         return self.needs[0]
 
-    @property
-    def speeds(self) -> tuple[float, ...]:  # type: ignore[override]
+    @computed_once
+    def speeds(self) -> tuple[float, ...]:
         """The speeds of a table in which pieces differ."""
         return self.table.knots if self.needs == ("V_C",) and len({*self.table.rows}) > 1 else ()
 
@@ -188,28 +188,28 @@ class SumOfLoads(OfMotion):
         """The loads that are summed."""
         return tuple(load for _, load in self.terms)
 
-    @property
-    def unit(self) -> str | None:  # type: ignore[override]
+    @computed_once
+    def unit(self) -> str | None:
         """The unit of those that have one."""
         return next((load.unit for load in self.members if load.unit is not None), None)
 
-    @property
-    def plain(self) -> tuple[str, ...]:  # type: ignore[override]
+    @computed_once
+    def plain(self) -> tuple[str, ...]:
         """The kinds of plain numbers of all members."""
         return tuple(dict.fromkeys(place for load in self.members for place in load.plain))
 
-    @property
-    def has_slope(self) -> bool:  # type: ignore[override]
+    @computed_once
+    def has_slope(self) -> bool:
         """True where the derivatives of all are known."""
         return all(load.has_slope for load in self.members)
 
-    @property
-    def has_ways(self) -> bool:  # type: ignore[override]
+    @computed_once
+    def has_ways(self) -> bool:
         """True with a load over the slider's position."""
         return any(load.has_ways for load in self.members)
 
-    @property
-    def speeds(self) -> tuple[float, ...]:  # type: ignore[override]
+    @computed_once
+    def speeds(self) -> tuple[float, ...]:
         """The speeds of the members."""
         return tuple(sorted({v for m in self.members for v in m.speeds}))
 
@@ -223,8 +223,8 @@ class SumOfLoads(OfMotion):
                 result[f"{name}_{same + 1}" if same else name] = k, name
         return result
 
-    @property
-    def numbers(self) -> Mapping[str, float]:  # type: ignore[override]
+    @computed_once
+    def numbers(self) -> Mapping[str, float]:
         """The numbers of all members; a second spring has stiffness_2."""
         return {name: self.members[k].numbers[own] for name, (k, own) in self._named.items()}
 

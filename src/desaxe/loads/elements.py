@@ -31,8 +31,8 @@ class Element(OverColumn):
     call: ClassVar[str]
     names: ClassVar[tuple[str, ...]]
 
-    @property
-    def numbers(self) -> Mapping[str, float]:  # type: ignore[override]
+    @computed_once
+    def numbers(self) -> Mapping[str, float]:
         """The numbers by which a motion has derivatives."""
         return {name: getattr(self, name) for name in self.names}
 

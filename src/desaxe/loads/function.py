@@ -45,8 +45,8 @@ class FunctionOverTheta(OverTheta):
         values = called(self.function, {"theta": shifted.ravel()}, "the load").reshape(shifted.shape)
         return bool(np.ptp(values, axis=0).max() <= REPEATED * np.abs(values).max())
 
-    @property
-    def has_slope(self) -> bool:  # type: ignore[override]
+    @computed_once
+    def has_slope(self) -> bool:
         """True where the derivative was given."""
         return self.derivative is not None
 

@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from ..units.system import Conversion
 
 MOST_RANGES = 16  # of angles, of which a table remembers the nodes
-ARRAYS = ("_parts", "_nodes", "_arrays", "columns", "lists")  # that are computed once
 POSITION = ("Y", "Y_wrt_theta", "Y_wrt_theta_theta")  # which piece holds: the position, and the way
 MOVING = ("omega", "V_C")  # columns that depend on the speed of the crank
 BY: dict[str, tuple[str, ...]] = {  # the parameters that a column depends on, without those of a position
@@ -176,8 +175,9 @@ class Load(ABC):
         return max((abs(row[0]) for table in self.tables for row in table.rows), default=0.0)
 
     def __getstate__(self) -> dict[str, Any]:
-        """The state without arrays, which are rebuilt when needed."""
-        return {name: value for name, value in self.__dict__.items() if name not in ARRAYS}
+        """The state without what is computed, which is rebuilt when needed."""
+        kept = {*(one.name for one in fields(self)), "shown_in"}  # type: ignore[arg-type]
+        return {name: value for name, value in self.__dict__.items() if name in kept}
 
     @property
     def place(self) -> str:
@@ -301,10 +301,14 @@ class OverY(Load):
     plain: tuple[str, ...] = field(default=(), compare=False)
 
     over = "Y"
-    needs = ("Y",)  # their difference keeps its value where the slider is at a position of the table
     curves = ("outward", "inward")
     has_ways = True
     rises = 1.0  # the way of the slider in which the table is gone through upwards
+
+    @computed_once
+    def needs(self) -> tuple[str, ...]:
+        """The position, and that of the dead centre: their difference stays at a position of the table."""
+        return ("Y", self.centre) if self.centre else ("Y",)
 
     def arrays(self) -> Arrays:
         """The knots and coefficients of the tables, those inward last."""

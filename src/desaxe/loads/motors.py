@@ -13,6 +13,7 @@ from ..mechanism.messages import Message, amount, listed, named
 from ..mechanism.quantity_units import SI, UnitSystem
 from ..mechanism.read import in_si, read_array
 from ..mechanism.slips import warn_of_slips
+from ..support.computed import computed_once
 from ..support.shown import shown
 from .load import outside
 from .made import ascending_table
@@ -88,8 +89,8 @@ class OverOmega(Motor):
     kind: str
     plain: tuple[str, ...] = field(default=(), compare=False)
 
-    @property
-    def knots(self) -> tuple[float, ...]:  # type: ignore[override]
+    @computed_once
+    def knots(self) -> tuple[float, ...]:
         """The speeds of the table."""
         return self.table.knots
 

@@ -12,6 +12,7 @@ q by a parameter p that the load F depends on is the Program's own, at a fixed l
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ..mechanism.catalogue import law_name, quantity
@@ -113,10 +114,11 @@ class LoadPlan(NamedTuple):
     shown: tuple[str, ...]
     names: tuple[str, ...]  # to evaluate: the requested ones, and the slopes by the loads
     terms: Mapping[str, tuple[Term, ...]]
-    loads: Mapping[str, Load]  # those that matter
+    acting: tuple[str, ...]  # the loads that matter
     motion: tuple[str, ...]  # names of the motion, at a fixed load, which the loads and derivatives need
     forces_of: Mapping[str, tuple[str, ...]]  # those that a name depends on
     of_motion: tuple[str, ...] = ()  # names of the motion that loads over its columns need
+    loads: Mapping[str, Load] = MappingProxyType({})  # those that act, of this request
 
     @property
     def follows_speed(self) -> bool:
@@ -143,8 +145,8 @@ def plan_of(
     plan = _PLANS.get(key)
     if plan is None:
         plan = _new_plan(names, loads, state, mu, known)
-        _PLANS[key] = plan._replace(loads=dict.fromkeys(plan.loads))  # type: ignore[arg-type]
-    return plan._replace(loads={name: loads[name] for name in plan.loads})
+        _PLANS[key] = plan
+    return plan._replace(loads={name: loads[name] for name in plan.acting})
 
 
 def _new_plan(
@@ -175,7 +177,7 @@ def _new_plan(
         columns |= dict.fromkeys(load.motion(by, state))
     more = (term.slope for term in every)
     requested = tuple(dict.fromkeys((*names, *more)))
-    return LoadPlan(tuple(names), requested, terms, used, tuple(motion), forces_of, tuple(of_motion))
+    return LoadPlan(tuple(names), requested, terms, tuple(used), tuple(motion), forces_of, tuple(of_motion))
 
 
 @lru_cache(maxsize=1024)

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ..support.computed import computed_once
 from .load import OverY, Partials, sign_of
 
 DEAD_CENTRES = ("outer", "inner")
@@ -17,20 +18,15 @@ class OverStroke(OverY):
 
     over = "stroke"
 
-    @property
-    def rises(self) -> float:  # type: ignore[override]
+    @computed_once
+    def rises(self) -> float:
         """Inward the distance from the outer dead centre grows, outward that from the inner one."""
         return -1.0 if self.dead_centre == "outer" else 1.0
 
-    @property
-    def centre(self) -> str:  # type: ignore[override]
+    @computed_once
+    def centre(self) -> str:
         """The name of the dead centre's position."""
         return f"Y_{self.dead_centre}"
-
-    @property
-    def needs(self) -> tuple[str, ...]:  # type: ignore[override]
-        """The position, and that of the dead centre."""
-        return "Y", self.centre
 
     @property
     def place(self) -> str:

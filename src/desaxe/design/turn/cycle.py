@@ -144,7 +144,7 @@ class Cycle:
 
     def _moving(self, names: Sequence[str]) -> list[tuple[tuple[str, ...], Array]]:
         """A quantity, or two whose difference stays the same at angles of jumps, and these, in rows."""
-        every = members_of(self.loads.values())
+        every = members_of(self._loads_of(names))
         loads = [load for load in every if isinstance(load, OverY) and load.jumps]
         meeting = [(load.needs, crossings(load, load.jumps, self.lengths, self.branch)) for load in loads]
         groups = [(("Y_wrt_theta",), dead_centres(self.lengths)), *meeting]
@@ -201,15 +201,16 @@ class Cycle:
         size = self.lengths[0].size
         low, high = self.ends
         across = repeated(ACROSS, low, high)
-        met = meeting_angles(self.loads.values(), high, self.lengths, self.branch, low)
+        loads = self._loads_of(names)
+        met = meeting_angles(loads, high, self.lengths, self.branch, low)
         jumps = [angles for _, angles in self._moving(names)]
         parts = [np.array([[low, high]]), across[None], met, *jumps]
         edges = np.concatenate([np.broadcast_to(part, (size, part.shape[1])) for part in parts], axis=1)
-        speeds = speeds_of(self.loads.values())
+        speeds = speeds_of(loads)
         if speeds:
             moving = resolved(lambda theta, row: self.values(["V_C"], theta, row, motion, **other), edges)
             edges = np.concatenate([edges, *(moving.roots(moving.values["V_C"] - v) for v in speeds)], axis=1)
-        if self.has_friction and self._depend_on_friction(names):
+        if self.has_friction and "mu" in self._inputs_of(names):
             sides = resolved(
                 lambda theta, row: self.values(["N_C"], theta, row, motion, **{**other, "mu": None}), edges
             )
@@ -228,8 +229,15 @@ class Cycle:
         edges = self.edges(names, **other) if edges is None else edges
         return resolved(lambda theta, row: self.values(names, theta, row, **other), edges, widest)
 
-    def _depend_on_friction(self, names: Sequence[str]) -> bool:
-        return "mu" in request(names, {**self.numbers, **self.loads}, self.branch, "standard").inputs
+    def _inputs_of(self, names: Sequence[str]) -> Iterable[str]:
+        """The inputs that matter to quantities; all of them to none."""
+        every = {**self.numbers, **self.loads}
+        return request(names, every, self.branch, "standard").inputs if names else every
+
+    def _loads_of(self, names: Sequence[str]) -> list[Load]:
+        """The loads that matter to quantities."""
+        inputs = self._inputs_of(names) if self.loads else ()
+        return [load for name, load in self.loads.items() if name in inputs]
 
 
 def _any_near(gaps: Any, angle: float, shape: tuple[int, ...]) -> Array:
