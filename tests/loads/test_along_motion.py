@@ -364,10 +364,3 @@ def test_a_die_and_a_spring_jump_where_the_die_does():
     assert dx.drive(F_Y=load, **TURNING)["torque_mean"] == pytest.approx(right[:-1].mean(), rel=1e-4)
     one, other = (dx.peak("T_in", F_Y=load, **{**TURNING, "AB": 0.04 + h})["value"] for h in (1e-6, -1e-6))
     assert result["gradient"]["AB"] == pytest.approx((one - other) / 2e-6, rel=1e-4)
-
-
-def test_a_crankshaft_refuses_steady_states_of_loads_that_depend_on_the_speed():
-    machine = dx.Machine(**TURNING, F_Y=dx.damper(200.0))
-    shaft = dx.Crankshaft(machine, phase=[0.0, np.pi], I_shaft=0.1)
-    with pytest.raises(ValueError, match="must not depend on the speed"):
-        shaft.steady(torque=MOTOR)

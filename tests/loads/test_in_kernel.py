@@ -87,32 +87,3 @@ def test_arrays_have_the_values_of_points_alone(name):
     assert dx.evaluate("T_in", theta=AXES["theta"][:3, None], ec=ec, F_Y=load, out=out, **MACHINE) is out
     assert np.isnan(out[:, 2]).all()
     assert_same({"T_in": out}, alone(["T_in"], load, theta=AXES["theta"][:3, None], ec=ec))
-
-
-@pytest.mark.parametrize("name", CASES)
-def test_a_grid_has_the_values_of_its_points(name):
-    """One offset is 0: at its dead centres the way of the slider turns at points of the grid."""
-    axes = {"theta": AXES["theta"][::5], "ec": AXES["ec"][::10], "omega0": np.array([-20.0, 30.0])}
-    machine = {n: value for n, value in MACHINE.items() if n not in axes}
-    result = dx.grid(NAMES, F_Y=LOADS[name], **axes, **machine)
-    cut = dx.grid(NAMES, F_Y=LOADS[name], chunks={"ec": 3, "theta": 4, "omega0": 1}, **axes, **machine)
-    for key in NAMES:
-        np.testing.assert_array_equal(cut[key], result[key], err_msg=key)
-    theta, ec, omega0 = np.meshgrid(*axes.values(), indexing="ij")
-    assert_same(
-        {n: result[n].values for n in NAMES}, alone(NAMES, LOADS[name], theta=theta, ec=ec, omega0=omega0)
-    )
-    taken = dx.grid("T_in", F_Y=LOADS[name], reduce={"theta": ["max", "mean"]}, **axes, **machine)
-    np.testing.assert_allclose(taken.T_in_max, result.T_in.max("theta"), rtol=1e-12)
-    np.testing.assert_allclose(taken.T_in_mean, result.T_in.mean("theta"), rtol=1e-10, atol=1e-11)
-
-
-def test_a_load_that_a_name_does_not_hang_on_changes_nothing():
-    """Without friction the torque has no part of a force across."""
-    across = dx.over_theta([0.0, 1.0, 2.0, 4.0], [0.0, -300.0, 50.0, 20.0])
-    axes = {"theta": np.linspace(0.0, 6.0, 5), "ec": [0.0, 0.01]}
-    both, one = (
-        dx.grid("T_in", F_Y=LOADS["steps over the stroke"], **more, **axes, **MACHINE)
-        for more in ({"F_X": across}, {})
-    )
-    np.testing.assert_array_equal(both.T_in, one.T_in)

@@ -282,9 +282,3 @@ def test_of_many_designs_those_without_the_dead_centre_do_not_start(options):
     assert many["status"].tolist() == [0, 6]
     assert many["work"][0] == pytest.approx(one["work"], rel=1e-9)
     assert np.isnan(many["theta"][1]).all()
-
-
-def test_the_help_shows_the_dead_centre_as_required():
-    said = type(dx.over_stroke).__doc__
-
-    assert said.splitlines()[0].startswith(f"`over_stroke({dx.over_stroke.takes})`")

@@ -41,19 +41,6 @@ def test_lazy_grids_and_stores_have_the_values_of_a_grid(kind, tmp_path):
 
 
 @pytest.mark.thorough
-def test_reductions_and_peaks_follow_the_load():
-    inputs = {"theta": ANGLES, "ec": EC, "F_Y": LOADS["stroke"], **MACHINE}
-    whole = dx.grid("T_in", **inputs).T_in
-    result = dx.sweep("T_in", reduce={"theta": "absmax"}, peaks="T_in", **inputs)
-    np.testing.assert_allclose(result.T_in_absmax, abs(whole).max("theta"), rtol=1e-12)
-    peaks = dx.peak("T_in", ec=EC[:, None], F_Y=LOADS["stroke"], **MACHINE)
-    np.testing.assert_allclose(result.peak_absmax_T_in, peaks["value"], rtol=1e-12)
-    np.testing.assert_allclose(result.peak_absmax_T_in_wrt_ec, peaks["gradient"]["ec"], rtol=1e-9, atol=1e-8)
-    spread = dx.sweep("T_in", reduce={("theta", "ec"): "p95"}, chunks={"BC": 1}, **inputs)
-    np.testing.assert_allclose(spread.T_in_p95, whole.quantile(0.95, ["theta", "ec"]), rtol=1e-12)
-
-
-@pytest.mark.thorough
 def test_what_travels_to_a_worker_needs_no_definitions_there(tmp_path):
     """Own quantities under a load: the steps of a sweep in a process that knows neither."""
     theta, name = ANGLES[1:-1], dx.define("shoe", "0.08 * abs(N_C * V_C)", unit="W")

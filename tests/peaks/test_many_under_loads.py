@@ -1,4 +1,6 @@
-"""Peaks of many designs under loads: they go through the search at once, and each is what it is alone."""
+"""Peaks under loads: of many designs at once, of derivatives, over two turns."""
+
+import warnings
 
 import numpy as np
 import pytest
@@ -56,3 +58,42 @@ def test_no_value_with_friction_is_that_of_a_dead_centre(load):
         beyond = sign * (result - swept) / np.abs(swept)
         assert (beyond >= -1e-8).all()
         assert (beyond <= 2e-3).all()
+
+
+DESIGN = {"ec": 0.01, "AB": 0.04, "BC": 0.064}
+ANGLES = np.linspace(0.0, 2 * np.pi, 25)[:-1]
+FORCES = np.random.default_rng(1).normal(size=24) * 300.0
+
+
+@pytest.mark.parametrize("accuracy", ["standard", "extended"])
+def test_a_derivative_is_searched_where_no_second_slope_of_the_load_is_needed(accuracy):
+    load = dx.over_theta(ANGLES, FORCES)
+    result = dx.peak("T_in_wrt_ec", F_Y=load, accuracy=accuracy, **DESIGN)
+    theta = np.linspace(0.0, 2 * np.pi, 100_001)
+    swept = np.abs(dx.evaluate("T_in_wrt_ec", theta=theta, F_Y=load, **DESIGN)).max()
+    assert swept * (1 - 1e-12) <= result["value"] <= swept * (1 + 1e-6)
+    step = 1e-6
+    ahead, behind = (
+        dx.peak("T_in_wrt_ec", F_Y=load, **{**DESIGN, "AB": DESIGN["AB"] + side * step})["value"]
+        for side in (1, -1)
+    )
+    assert result["gradient"]["AB"] == pytest.approx((ahead - behind) / (2 * step), rel=1e-5)
+    for name, more in (("T_in_wrt_theta", load), ("T_in_wrt_AB", dx.over_Y([0.03, 0.06, 0.1], [0, -9, 5]))):
+        with pytest.raises(ValueError, match=f"peak of {name}: it has the slope of F_Y"):
+            dx.peak(name, F_Y=more, **DESIGN)
+
+
+def test_a_load_of_two_turns_is_searched_over_both():
+    load = dx.over_theta([0.0, 1.0, 7.0, 8.0], [0.0, 10.0, 0.0, 500.0], kind="linear", period=4 * np.pi)
+    result = dx.peak("T_in", F_Y=load, **DESIGN)
+    assert result["theta"] > 2 * np.pi
+    assert dx.peak("T_in", F_Y=load, theta=(0.0, 2 * np.pi), **DESIGN)["value"] < result["value"]
+
+
+def test_a_long_array_of_loads_alone_is_warned_of():
+    with pytest.warns(dx.LoadWarning, match="F_Y=desaxe.over_theta"):
+        dx.peak("T_in", F_Y=np.zeros(61), **DESIGN)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        dx.peak("T_in", F_Y=np.zeros(60), **DESIGN)
+        dx.peak("T_in", F_Y=np.zeros(61), **(DESIGN | {"ec": np.zeros(61)}))

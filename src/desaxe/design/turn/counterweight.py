@@ -108,8 +108,10 @@ def counterweight(
         result["mass"] = result["product"] / _radius(radius)
     if sliders is not None:
         own = {"balance": share, "loads": loads, "omega0": speed}
-        throws = [counterweight(**own, **inputs) for inputs in turn.numbers["sliders"].inputs_of_each()]
-        result["throws"] = [{key: throw[key] for key in ("product", "angle")} for throw in throws]
+        every = turn.numbers["sliders"].inputs_of_each()
+        alike = [every.index(inputs) for inputs in every]
+        throws = {k: counterweight(**own, **every[k]) for k in {*alike}}
+        result["throws"] = [{key: throws[k][key] for key in ("product", "angle")} for k in alike]
     weight_units, force = units_of(("product", "angle")), unit_of("F_X")
     return Answer(result, {
         **weight_units, "counter_rotating": weight_units, "mass": unit_of("mass"), "throws": weight_units,
