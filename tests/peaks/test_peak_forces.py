@@ -62,7 +62,7 @@ def refined(name, sign, theta, design):
 @pytest.mark.sampled
 def test_peaks_with_friction_are_those_of_free_bodies():
     """Random designs of both branches that turn fully; values are finite where friction never jams."""
-    for seed in range(cases(6, 40, 1000)):
+    for seed in range(cases(3, 40, 1000)):
         rng = np.random.default_rng([seed, 50])
         AB = rng.uniform(0.03, 0.07)
         ec, mu = rng.uniform(-0.9, 0.9) * AB * rng.integers(0, 2), rng.uniform(0.01, 0.3)

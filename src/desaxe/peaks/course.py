@@ -163,7 +163,7 @@ def _at_speeds(speeds: Sequence[float], designs: SearchedDesigns) -> list[_Part]
 
         angles = sign_changes_of(excess, nodes, block)
         room = BESIDE * np.spacing(1.0 + np.abs(angles))
-        beside = np.concatenate([angles, angles - room, angles + room], axis=1)
+        beside = np.concatenate([angles - room, angles + room], axis=1)
         parts.append(_Part(beside, [(angles, SPEED)], []))
     return parts
 
@@ -172,7 +172,7 @@ def _over_theta(load: Load, designs: SearchedDesigns) -> _Part:
     low, high = designs.theta
     assert isinstance(load, OverTheta)
     own = _jumps_over_theta(load, low, high)
-    every = np.concatenate([load.nodes(low, high, smooth=True), own, np.nextafter(own, -inf)])
+    every = np.unique(np.concatenate([load.nodes(low, high, smooth=True), own, np.nextafter(own, -inf)]))
     marks = [(np.broadcast_to(own, (designs.size, own.size)), FIXED)]
     return _Part(np.broadcast_to(every, (designs.size, every.size)), marks, marks)
 
@@ -190,8 +190,8 @@ def _over_Y(
     kinks = [(own, crossing), (turning, TURNING)]
     if arcs is None:
         room = BESIDE * np.spacing(1.0 + np.abs(own))  # so that no search halves its way to a kink
-        smooth = own if every is bent else repeated(every, *designs.theta)
-        return _Part(np.concatenate([smooth, own - room, own + room], axis=1), kinks, [])
+        smooth = [] if every is bent else [repeated(every, *designs.theta)]
+        return _Part(np.concatenate([own - room, own + room, *smooth], axis=1), kinks, [])
     jumps = [(np.where(arcs.turns, arcs.starts, np.nan), TURNING)]
     jumps += [(np.where(arcs.leaps & ~arcs.turns, arcs.starts, np.nan), crossing)]
     before = np.nextafter(arcs.starts, -inf)  # where the slope is that of the arc before
