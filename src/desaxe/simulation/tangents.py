@@ -186,7 +186,7 @@ class Tangents:
         return arm * known["N_C"], of_arm * known["N_C"] + arm * (of_normal + by_alpha * of_alpha)
 
     def _of_guides(self, state: "_State", t: Array, of_torque: Array) -> tuple[Array, Array]:
-        """What the guides of several sliders take: the torque with friction without that without it."""
+        """The friction torque of several sliders, T_in with it less T_in without; its slopes."""
         theta, omega, *by_state = state
         alpha = Law(self.model, self.model.drive).alpha(t, theta, omega)
         names = self._names("T_in", "omega", "alpha")

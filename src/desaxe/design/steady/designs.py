@@ -262,7 +262,7 @@ def _rate_by_state(designs: DesignRows, course: Course, E: Array) -> Rate:
 
 
 def kinks_of(designs: DesignRows, course: Course, here: Rate, x: Array) -> list[Array]:
-    """What changes its sign where friction or a load over the slider's speed has a kink."""
+    """Functions that change sign where friction or a load over the slider's speed has a kink."""
     if not designs.by_state:
         normal = [] if here.normal is None else [here.normal]
         return [*(course["travel"] * here.omega - speed for speed in designs.speeds), *normal]
