@@ -10,6 +10,7 @@ from typing import NamedTuple
 import sympy as sp
 
 from desaxe.mechanism.names import LOADS, PARAMETERS, WHOLE, parts
+from desaxe.support.shown import shown
 
 from . import bodies
 from .dynamics import FORCES, LUMPS, mu
@@ -67,8 +68,8 @@ def equation(name: str, form: str = "textbook") -> EquationText:
     from desaxe.mechanism.catalogue import quantity
 
     known = quantity(name)
-    if form not in FORMS:
-        raise ValueError(f"form = {form!r}: it is one of {', '.join(FORMS)}")
+    if not isinstance(form, str) or form not in FORMS:
+        raise ValueError(f"form = {shown(form)}: it is one of {', '.join(FORMS)}")
     if form == "stable":
         result = stable_form(name)
         derivatives = {

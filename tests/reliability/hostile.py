@@ -384,6 +384,7 @@ def verdict_of(what: str, run: Callable[[], Any], value: Any, names: Sequence[st
             "no value",
             "quantity",
             "path",
+            "press",  # the file
         }
         named = any(word in str(error) for word in words) or isinstance(error, (MemoryError, TimeoutError))
         return (

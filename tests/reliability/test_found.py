@@ -86,6 +86,18 @@ REFUSED = {
     "an array for a yes or no": (lambda: dx.compile({}, "a.c", to="c", check=np.ones(2)), ["check", "True"]),
     "a tiny fluctuation": (lambda: dx.drive(fluctuation=5e-324, m_slider=1.0, **MACHINE), ["fluctuation"]),
     "a range as a table": (lambda: dx.scene({"reduce": range(0)}), ["reduce"]),
+    "a huge form": (lambda: dx.equation("a_C", form=HUGE), ["form", "bits"]),
+    "numbers as a language": (
+        lambda: dx.compile({"outputs": ["Y"], "mechanism": LENGTHS}, "a.c", to=np.ones(2)),
+        ["to = array", "numba"],
+    ),
+    "a time as memory": (
+        lambda: dx.sweep("a_C", store="x", memory=np.timedelta64(1, "s"), theta=[1.0], **MACHINE),
+        ["memory"],
+    ),
+    "a huge name": (lambda: dx.optimize(maximize="stroke", over={HUGE: (0, 1)}, AB=0.1, BC=0.3), ["bits"]),
+    "a number as a name": (lambda: dx.optimize(maximize="stroke", over={5: (0, 1)}, AB=0.1, BC=0.3), ["5"]),
+    "rows of two lengths": (lambda: peak(omega0=[[1.0], [1.0, 2.0]]), ["omega0", "an array of numbers"]),
     "a huge branch": (lambda: dx.scene({"mechanism": {"branch": HUGE}}), ["branch"]),
     "a device": (lambda: dx.scene("/dev/zero"), ["/dev/zero", "device"]),
 }
@@ -97,7 +109,7 @@ def test_refused_in_words_of_ours(what):
     with pytest.raises((ValueError, TypeError)) as caught:
         call()
     assert all(word in str(caught.value) for word in words), str(caught.value)
-    assert "/desaxe/" in str(caught.traceback[-1].path)
+    assert {"desaxe", "derive"} & set(caught.traceback[-1].path.parts)
 
 
 @pytest.mark.parametrize("call", [dx.enclose, dx.optimize])

@@ -5,6 +5,7 @@ from functools import wraps
 from typing import ParamSpec, TypeVar
 
 from ..support.forks import IMPORTS
+from ..support.shown import shown
 from .inputs import INPUTS
 from .spelling import did_you_mean
 
@@ -26,7 +27,7 @@ def unknown_input(caller: str, name: str, allowed: Sequence[str]) -> TypeError:
         way = f"a machine's {caller} has it, as in dx.Machine(**inputs).{caller}(..., as_quantity=True)"
         return TypeError(f"{caller}() has no as_quantity=: {way}")
     near = did_you_mean(name, allowed, NEAREST).strip() or f"there are {', '.join(allowed)}"
-    return TypeError(f"{caller}() has no input {name!r}; {near}")
+    return TypeError(f"{caller}() has no input {shown(name)}; {near}")
 
 
 def with_known_keywords(function: Callable[P, T], caller: str = "") -> Callable[P, T]:

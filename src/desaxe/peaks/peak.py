@@ -26,7 +26,7 @@ from ..mechanism.status import PeakStatus
 from ..runtime.request import as_number, check_common, check_sliders, is_steady
 from ..support.answer import Answer
 from ..support.shown import shown as shown_value
-from .designs import KINDS, PeakPlan, peaks_of_designs, search_of, sought_of
+from .designs import KINDS, peaks_of_designs, search_of, sought_of
 from .nodes import Array
 
 MOST_TURNS = 1000  # of a range of crank angles
@@ -108,10 +108,10 @@ def peak(
     plan = sought.plan
     if ends is None:
         _range(sought.ends, name)  # the cycle of loads may have too many turns
-    _warn_of_columns(inputs, plan)
     if "omega0" in plan.needs and omega0 is None:
         inputs["omega0"] = 0.0 if "omega0" not in plan.parameters else None  # which only the status uses
     arrays = {n: as_array(n, inputs.get(n), plan.needs, (name,)) for n in sought.numbers}
+    _warn_of_columns(arrays)
     shape = broadcast_shape(arrays)
     columns = {n: _flat(a, shape) for n, a in arrays.items()}
     search = search_of(plan, arrays, sought.ends)
@@ -136,10 +136,9 @@ def _range(theta: Any, name: str) -> tuple[float, float]:
     return low, high
 
 
-def _warn_of_columns(inputs: Mapping[str, Any], plan: "PeakPlan") -> None:
+def _warn_of_columns(inputs: Mapping[str, Any]) -> None:
     """A long array of loads and no other array are hardly designs: more likely a load over theta."""
-    shapes = {n: np.shape(getattr(inputs.get(n), "magnitude", inputs.get(n, 0.0))) for n in plan.needs}
-    arrays = {n: shape for n, shape in shapes.items() if shape}
+    arrays = {n: shape for n, value in inputs.items() if (shape := np.shape(value))}
     for name, shape in arrays.items():
         if name in VARIABLE and len(arrays) == 1 and len(shape) == 1 and shape[0] > MANY:
             warn(

@@ -28,7 +28,7 @@ def bytes_of(memory: Any) -> int | None:
     if match is not None:
         prefix = " kmgt".index((match[2] or " ").lower())
         number = float(match[1]) * (1024.0 if match[3] else 1000.0) ** prefix
-    elif is_number:
+    elif is_number and type(memory).__name__ != "timedelta64":  # which NumPy counts among integers
         number = float(max(min(memory, 2**63), -1))
     else:
         kind = ValueError if isinstance(memory, str) else TypeError

@@ -308,6 +308,13 @@ def test_arrays_agree_with_numbers_and_keep_bad_ones_apart():
     assert np.isnan(many["stroke"][0, 4])
 
 
+@pytest.mark.parametrize("ec", [[1.0, 2.0], [math.nan, 1.0]])
+def test_none_of_several_designs_turns(ec):
+    result = dx.events(ec=ec, AB=0.125, BC=0.35)
+    assert np.isnan([result["V_outward"], result["stroke"]]).all()
+    assert result["status"].tolist() == [4 if math.isnan(ec[0]) else 1, 1]
+
+
 def test_the_fastest_points_of_arrays_are_roots_of_the_acceleration():
     """There the acceleration changes its sign."""
     ec = np.linspace(-0.0239, 0.0239, 701)

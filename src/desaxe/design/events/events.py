@@ -153,8 +153,8 @@ def _velocity(
     That is where the acceleration vanishes; without a crank, or at a change point, it may be an end itself,
     from which it grows as a root of the margin.
     """
-    if numbers is FLOATS and status == 1:
-        return [nan] * 6
+    if status == 1 if numbers is FLOATS else ((status == 1) | (status == 4)).all():
+        return [values["stroke"] * nan for _ in range(6)]
     design = dict(zip(LENGTHS, lengths, strict=True))
 
     def at(theta: Any, names: Any, omega0: Any = 1.0) -> Any:

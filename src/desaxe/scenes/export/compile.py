@@ -98,7 +98,7 @@ def require_fmu(place: Path) -> None:
 def generated(scene: Scene, place: Path, to: str = "numba", drive: str = "torque") -> Generated:
     """The files of a scene in a language; nothing is written."""
     with using(scene.content.definitions):
-        if to == "fmu":
+        if isinstance(to, str) and to == "fmu":
             require_fmu(place)
             return fmu_of(scene, place, drive)
         return _generated(scene, place, to)
