@@ -88,7 +88,9 @@ REFUSED = {
     "a range as a table": (lambda: dx.scene({"reduce": range(0)}), ["reduce"]),
     "a huge form": (lambda: dx.equation("a_C", form=HUGE), ["form", "bits"]),
     "numbers as a language": (
-        lambda: dx.compile({"outputs": ["Y"], "mechanism": LENGTHS}, "a.c", to=np.ones(2)),
+        lambda: dx.compile(
+            {"outputs": ["Y"], "mechanism": LENGTHS, "motion": {"theta": 1.0}}, "a.c", to=np.ones(2)
+        ),
         ["to = array", "numba"],
     ),
     "a time as memory": (
