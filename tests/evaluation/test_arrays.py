@@ -180,6 +180,27 @@ def test_an_out_for_no_name_or_for_numbers_is_refused():
         dx.evaluate("V_C", **POINT, out=np.empty(()))
 
 
+# ---- threads and far angles -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("size", [39_999, 40_001, 100_003])
+def test_threads_change_no_bit(size):
+    theta, ec = columns(size)
+    one, two, free = (dx.evaluate("V_C", theta=theta, ec=ec, **SIZES, threads=n) for n in (1, 2, None))
+    assert np.array_equal(one, two)
+    assert np.array_equal(one, free)
+
+
+@pytest.mark.parametrize("largest", [1.6e6, 1e7, 1e15])
+def test_an_angle_may_be_far(largest):
+    """Its sine is that of the C library; the others of its column keep theirs."""
+    theta = np.array([largest, -largest / 3, 1.0])
+    result = dx.evaluate("V_C", theta=theta, ec=np.zeros(3), **SIZES)
+    assert close(result, [dx.evaluate("V_C", theta=t, ec=0.0, **SIZES) for t in theta.tolist()])
+    near = dx.evaluate("V_C", theta=np.array([2.0, 1.0]), ec=np.zeros(2), **SIZES)
+    assert result[2] == near[1]
+
+
 # ---- requests that are remembered ----------------------------------------------------------------
 
 MANY = np.linspace(-7.0, 7.0, 300_001)

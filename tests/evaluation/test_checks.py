@@ -58,8 +58,9 @@ def test_the_status_of_one_point(case):
     assert (type(result), result) == (int, code)
 
 
-def test_a_status_without_a_motion():
-    assert dx.evaluate("status", theta=1.0, ec=0.0, AB=0.125, BC=0.35) == 0
+@pytest.mark.parametrize("state", [{}, {"omega": -20.0, "alpha": -1e9}])
+def test_a_status_without_a_motion_or_in_a_given_state(state):
+    assert dx.evaluate("status", theta=100.0, ec=0.0, AB=0.125, BC=0.35, **state) == 0
 
 
 INPUTS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
@@ -138,6 +139,13 @@ REFUSED = [
     ("V_C", {"threads": 0}, ValueError, "threads = 0: a whole number, at least 1"),
     (["V_C", 7], {}, TypeError, "the name of a quantity is a str, got 7"),
     ("V_C", {"length": 3.0}, TypeError, "length"),
+    (
+        "V_C",
+        {"theta": np.ma.masked_invalid([0.1, math.nan])},
+        TypeError,
+        "theta: a masked array; fill it",
+    ),
+    ("V_C_wrt_omega0", {"omega0": None, "omega": 3.0}, ValueError, "no meaning for a given state omega="),
 ]
 
 

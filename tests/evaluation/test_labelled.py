@@ -92,6 +92,8 @@ def test_a_variable_has_no_coordinates_and_broadcasts_by_position():
 
 
 def test_what_does_not_fit_is_refused():
+    with pytest.raises(ValueError, match=r"theta \('theta',\), ec \('design',\); use grid"):
+        dx.evaluate("a_C", theta=THETA, ec=EC, out=np.empty((5, 3)), **MACHINE)  # it has no labels
     with pytest.raises(ValueError, match="theta"):
         dx.evaluate("a_C", theta=THETA, ec=0.0 * THETA[1:], **MACHINE)
     with pytest.raises(ValueError, match=r"BC: an array without labels beside"):

@@ -64,16 +64,6 @@ def test_a_dataset_can_be_asked_for_again_by_what_it_says(grid):
     xr.testing.assert_identical(again, grid)
 
 
-def test_selecting(grid):
-    row = grid.sel(ec=0.1).sel(theta=1.5, method="nearest")
-    alone = dx.evaluate("a_C", theta=float(row.theta), ec=0.1, **MACHINE)
-    assert row.a_C.item() == pytest.approx(alone, rel=1e-14)
-    turning = grid.where(grid.margin >= 0, drop=True)
-    assert turning.ec.values.tolist() == [0.0, 0.1]
-    assert grid.a_C.max("theta").dims == ("ec",)
-    assert grid.to_dataframe().loc[(0.0, 0.1), "BC"] == 0.35
-
-
 # ---- flags -----------------------------------------------------------------------------------------
 
 
@@ -84,10 +74,6 @@ def test_cf_flags(grid):
     flags = grid.status.cf.flags
     assert (flags.ok == (grid.status == 0)).all()
     assert len(flags) == 7
-
-
-def test_cf_brings_the_status_along(grid):
-    assert set(grid.cf["a_C"].coords) == {"theta", "ec", "status"}
 
 
 # ---- files -----------------------------------------------------------------------------------------

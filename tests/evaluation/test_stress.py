@@ -136,13 +136,8 @@ def test_the_torque_keeps_the_promise(family):
 
 
 TORQUE_UNITS = {  # powers of length, of rate and of mass
-    **{
-        "m_crank": (0, 0, 1),
-        "m_rod": (0, 0, 1),
-        "m_slider": (0, 0, 1),
-        "I_crank": (2, 0, 1),
-        "I_rod": (2, 0, 1),
-    },
+    **dict.fromkeys(("m_crank", "m_rod", "m_slider"), (0, 0, 1)),
+    **dict.fromkeys(("I_crank", "I_rod"), (2, 0, 1)),
     **{"F_X": (1, 2, 1), "F_Y": (1, 2, 1), "g_Y": (1, 2, 0)},
 }
 
@@ -189,23 +184,9 @@ def test_units_of_time_and_tiny_angles(rate):
 
 
 ODD = (
-    0.0,
-    -0.0,
-    5e-324,
-    -5e-324,
-    2.2e-308,
-    -1e-310,
-    1e-170,
-    1e-60,
-    1.0,
-    -1.0,
-    1e60,
-    1.1e60,
-    1.7e308,
-    math.inf,
-    -math.inf,
-    math.nan,
-)
+    0.0, -0.0, 5e-324, -5e-324, 2.2e-308, -1e-310, 1e-170, 1e-60, 1.0, -1.0, 1e60, 1.1e60, 1.7e308,
+    math.inf, -math.inf, math.nan,
+)  # fmt: skip
 REAL = [x for x in ODD if abs(x) <= 1e60]
 USUAL = {"theta": 1.0, "ec": 0.1, "AB": 0.2, "BC": 0.5, "omega0": 3.0, "alpha": 0.5}
 

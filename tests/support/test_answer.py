@@ -35,6 +35,21 @@ def test_numbers_have_six_digits():
     assert repr(Answer()) == "{}"
 
 
+def test_what_rounding_leaves_of_nothing_is_printed_as_nothing():
+    """At the inner dead centre Y = BC - AB: its gradient has no part along ec but by rounding of pi."""
+    peak = dx.peak("Y", kind="min", ec=0.0, AB=0.05, BC=0.15)
+    assert 0.0 < abs(peak["gradient"]["ec"]) < 1e-15
+    assert "gradient  {ec: 0, AB: -1, BC: 1}" in repr(peak)
+    assert repr(Answer(gradient={"a": -0.0, "b": 1e-20, "c": 1e-9}, x=-0.0)) == (
+        "gradient  {a: 0, b: 1e-20, c: 1e-09}\nx         0"
+    )
+    apart = Answer({"gradient": {"ec": 1e-20, "AB": 2.0}}, {"gradient": {"ec": "m", "AB": "rad"}})
+    assert "ec: 1e-20 m" in repr(apart)
+    table = repr(dx.harmonics("a_C", ec=0.0, AB=0.05, BC=0.15, omega0=314.0)).splitlines()
+    assert [float(x) for row in table[2:11] for x in row.split()[2:3]] == [0.0] * 9  # an even function
+    assert [float(row.split()[1]) for row in table[5:11:2]] == [0.0] * 3  # of odd orders but the first
+
+
 def test_arrays_are_shown_by_their_range():
     many = np.append(np.arange(9.0), np.nan)
     assert repr(Answer(a=many, few=many[:2])) == "a    10 float64 0 .. 8, 1 nan\nfew  [0, 1]"

@@ -50,7 +50,7 @@ def evaluate_arrays(
             scalars[name] = value
         else:
             arrays[name] = as_array(name, value, call.inputs, names)
-            others = others or type(value) is not np.ndarray
+            others = others or hasattr(value, "dims") or hasattr(value, "iloc")
     if others:
         with IMPORTS:
             from .labelled import by_dimensions, is_labelled, refuse_other_labels
@@ -96,10 +96,10 @@ def number_or_array(row: Input, value: Any) -> Array:
 
 
 def _not_wholly_bad(name: str, array: Array) -> Array:
-    if array.size and not is_good(name, array.item(0)) and not are_good(name, array).any():
-        first = amount(name, array.item(0))
-        limit = limit_of(name, array.item(0))
-        raise ValueError(f"{name}: every value is bad, the first is " + first + f"; {limit}")
+    first = array.item(0) if array.size else 1.0
+    if not (LEAST < first < MOST or is_good(name, first) or are_good(name, array).any()):
+        message = amount(name, first) + f"; {limit_of(name, first)}"
+        raise ValueError(f"{name}: every value is bad, the first is " + message)
     return array
 
 
@@ -193,7 +193,8 @@ def fill(
         sizes = shape if key.axes == len(shape) else (prod(shape),)
         columns = {n: _column(a, a.shape if key.axes > 1 else shape) for n, a in arrays.items()}
     if columns:
-        run_in_blocks(key, {**scalars, **columns}, [out.reshape(sizes) for out in outs], threads)
+        outs = outs if sizes == shape else [out.reshape(sizes) for out in outs]
+        run_in_blocks(key, {**scalars, **columns}, outs, threads)
         return
     point = point_of(key.names, key.form, key.fixed, key.accuracy)
     for out, value in zip(outs, point.run(scalars), strict=True):
@@ -230,8 +231,7 @@ def loops_over(arrays: Mapping[str, Array], shape: Sequence[int]) -> Loops:
     if nested is not None:
         return nested
     columns = {
-        name: array.reshape(-1) if array.size == size and array.flags.c_contiguous else _column(array, shape)
-        for name, array in arrays.items()
+        name: array if array.shape == (size,) else _column(array, shape) for name, array in arrays.items()
     }
     return (size,), columns, dict.fromkeys(columns, 0)
 
@@ -263,4 +263,6 @@ def _inputs(along: Mapping[str, set[int]], axis: int) -> set[str]:
 
 
 def _column(array: Array, shape: Sequence[int]) -> Array:
+    if array.shape == shape and array.flags.c_contiguous:
+        return array.reshape(-1)
     return np.ascontiguousarray(np.broadcast_to(array, shape)).reshape(-1)

@@ -37,7 +37,7 @@ def with_known_keywords(function: Callable[P, T], caller: str = "") -> Callable[
     @wraps(function)
     def checked(*args: P.args, **named: P.kwargs) -> T:
         if not known:
-            known.extend(_keywords(function))
+            known.extend(keywords_of(function))
         if named.get("sliders") is None or "sliders" not in known:  # these know their inputs
             check_inputs(caller or function.__name__, named, known)
         return function(*args, **named)
@@ -45,7 +45,8 @@ def with_known_keywords(function: Callable[P, T], caller: str = "") -> Callable[
     return checked
 
 
-def _keywords(function: Callable[..., object]) -> list[str]:
+def keywords_of(function: Callable[..., object]) -> list[str]:
+    """The keywords of a function; `**` stands for all inputs."""
     with IMPORTS:
         from inspect import signature
 

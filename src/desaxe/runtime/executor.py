@@ -79,12 +79,10 @@ class CompiledKernel:
 
     def run(self, values: Mapping[str, Any], outs: Sequence[Any]) -> int:
         """Fill `outs`, arrays over the axes; return how many points are left (see `settle`)."""
-        given = [values[name] for name in self.arguments]
-        arrays = [*given, *outs]
+        arrays = [*[values[name] for name in self.arguments], *outs]
         steps = [array.strides[-1] for array in arrays]
         lengths = [*outs[0].shape]
-        if self._tables:
-            arrays += [np.empty([lengths[axis] for axis in along]) for along in self._tables]
+        arrays += [np.empty([lengths[axis] for axis in along]) for along in self._tables]
         for table in self.given:
             arrays += [values[f"{table}_x"], values[f"{table}_c"]]
             lengths.append(values[f"{table}_x"].size)

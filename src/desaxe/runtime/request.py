@@ -1,13 +1,13 @@
 """The check of a request: names, inputs, accuracy, once, with errors that name the wrong one."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import lru_cache, wraps
+from functools import cache, lru_cache, wraps
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from ..mechanism.catalogue import law_name, of_design, quantity
 from ..mechanism.constants import double_constants
 from ..mechanism.inputs import INPUTS
-from ..mechanism.keywords import unknown_input
+from ..mechanism.keywords import keywords_of, unknown_input
 from ..mechanism.messages import amount, named
 from ..mechanism.names import CENTRES, FORCE_STATUS, LENGTHS, LOADS, STATUS, STATUSES, TURN_STATUS, parts
 from ..mechanism.own import Definition, Register, register, used_by
@@ -169,27 +169,16 @@ def with_known_inputs(function: Callable[P, T]) -> Callable[P, T]:
     Masses and loads that have no effect on it are let through, and so are the speeds of a machine:
     `**machine` works everywhere. A motion starts at the speed of the machine unless `omega_start` is given.
     """
+    known = cache(lambda: keywords_of(function))
 
     @wraps(function)
     def checked(*args: P.args, **inputs: P.kwargs) -> T:
-        try:
-            return function(*args, **inputs)
-        except TypeError:
-            with IMPORTS:
-                from inspect import signature
-
-            known = tuple(signature(function).parameters)
-            others = [name for name in inputs if name not in known]
-            if not others:
-                raise
-        strange = [
-            name for name in others if not (name in OF_NO_EFFECT or isinstance(inputs[name], MachineSpeed))
-        ]
-        if strange:
-            raise unknown_input(function.__name__, strange[0], known)
-        own: Any = {name: value for name, value in inputs.items() if name in known}
+        own: Any = {name: value for name, value in inputs.items() if name in known()}
+        for name in (name for name in inputs if name not in own):
+            if not (name in OF_NO_EFFECT or isinstance(inputs[name], MachineSpeed)):
+                raise unknown_input(function.__name__, name, known())
         speed = inputs.get("omega0", inputs.get("omega"))
-        if speed is not None and "omega_start" in known:
+        if speed is not None and "omega_start" in known():
             own.setdefault("omega_start", speed)
         return function(*args, **own)
 

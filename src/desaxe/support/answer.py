@@ -8,6 +8,7 @@ from .shown import with_unit
 
 DIGITS = 6  # shown of a number; the answer itself has all
 FEW = 6  # values of an array that are all shown
+ROUNDED = 2.0**-46  # of the largest slope of a unit: a smaller one is what rounding leaves of 0
 WIDE = 96  # letters of a line
 
 
@@ -66,13 +67,27 @@ def lines_of(mapping: Mapping[Any, Any], units: Any, codes: Any = None) -> list[
     lines = []
     for name, value in mapping.items():
         unit = _unit_of(units, name)
-        text = text_of(value, unit)
-        if isinstance(value, Mapping) and len(text) > WIDE - width:
-            lines += [str(name), *(f"    {line}" for line in lines_of(value, unit))]
+        part = cleaned(value, unit) if name == "gradient" else value
+        text = text_of(part, unit)
+        if isinstance(part, Mapping) and len(text) > WIDE - width:
+            lines += [str(name), *(f"    {line}" for line in lines_of(part, unit))]
         else:
             reason = _reason(value, codes) if name == "status" else ""
             lines.append(f"{name!s:{width}}  {text}{reason}")
     return lines
+
+
+def cleaned(gradient: Any, units: Any) -> Any:
+    """A gradient in which slopes are 0 that vanish to rounding beside the largest of the same unit."""
+    if not isinstance(gradient, Mapping):
+        return gradient
+    result = {key: cleaned(part, _unit_of(units, key)) for key, part in gradient.items()}
+    slopes = {key: part for key, part in result.items() if isinstance(part, float)}
+    for key, slope in slopes.items():
+        unit = str(_unit_of(units, key))
+        most = max(abs(other) for name, other in slopes.items() if str(_unit_of(units, name)) == unit)
+        result[key] = slope if not abs(slope) <= ROUNDED * most else 0.0
+    return result
 
 
 def _unit_of(units: Any, key: Any) -> Any:
@@ -103,7 +118,7 @@ def text_of(value: Any, unit: Any = "") -> str:
         return with_unit(f"{left}{', '.join(map(text_of, value))}{right}", unit)
     if getattr(value, "shape", ()):
         return _array(value, unit)
-    text = f"{value:.{DIGITS}g}" if isinstance(value, float) else str(value)
+    text = f"{value + 0.0:.{DIGITS}g}" if isinstance(value, float) else str(value)  # no -0
     return with_unit(text, unit) if isinstance(unit, str) and _is_number(value) else text
 
 

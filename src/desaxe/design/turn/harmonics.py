@@ -26,12 +26,18 @@ class Harmonics(Answer):
     def __repr__(self) -> str:
         columns = ("order", "cos", "sin", "amplitude", "phase")
         shown = [k for k in range(len(self["order"])) if k < ROWS]
-        rows = [tuple(text_of(self[name][k]) for name in columns) for k in shown]
+        sizes = {"cos": 1.0, "sin": 1.0, "amplitude": 1.0, "phase": self["amplitude"]}
+        numbers = {
+            n: np.where(abs(self[n]) * size <= self["error"], 0.0, self[n]) for n, size in sizes.items()
+        }
+        numbers["order"] = self["order"]
+        rows = [tuple(text_of(float(numbers[name][k])) for name in columns) for k in shown]
         units = tuple(printed(str(self.units.get(name, ""))) for name in columns)
         lines = table([columns, *([units] if any(units) else []), *rows], "r" * len(columns))
         if len(shown) < len(self["order"]):
             lines.append(f"... {len(self['order'])} orders")
         rest = {name: value for name, value in self.items() if name not in columns}
+        rest["mean"] = 0.0 if abs(self["mean"]) <= self["error"] else self["mean"]
         return "\n".join([*lines, *lines_of(rest, self.units)])
 
 
