@@ -29,10 +29,10 @@ length = "mm"
 [mechanism]
 AB = 50
 BC = 200
-ec = [0, 10, 170]
+ec = [0, 170]
 [motion]
 omega0 = "300 rpm"
-theta = { start = 0, stop = "360 deg", num = 37 }
+theta = { start = 0, stop = "360 deg", num = 19 }
 [masses]
 m_slider = 4
 [[peak]]

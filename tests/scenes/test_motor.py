@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.cli.command import main
 from desaxe.scenes.scene import SceneError
 
 KLOSS = {"breakdown_torque": 40, "breakdown_slip": 0.15, "synchronous_speed": 1500, "gear": 12}
@@ -84,24 +83,6 @@ def test_a_machine_writes_the_motor_into_its_scene(tmp_path):
         result = again.run().steady.found
         own = press.steady(torque=motor, flywheel_inertia=3)["omega_mean"]
         assert result["omega_mean"] * 30 / pi == pytest.approx(own, rel=1e-12)
-
-
-def test_the_page_has_table_and_picture(tmp_path, capsys):
-    place = tmp_path / "press.toml"
-    place.write_text(
-        'title = "Press"\n[mechanism]\nAB = 0.05\nBC = 0.2\nec = 0.01\n[masses]\nm_slider = 20\nI_crank = 2\n'
-        '[motion]\nomega0 = 13\n[steady]\ntorque = { over_omega = [["0 rpm", 300], ["130 rpm", -100]] }\n'
-        "fluctuation = 0.02\n"
-    )
-    assert main(["run", str(place), "--report", str(tmp_path / "press.md")]) == 0
-    assert "Steady state" in capsys.readouterr().out
-    page = (tmp_path / "press.md").read_text()
-    assert "## Steady state" in page
-    assert "| omega_mean \\[rad/s\\] |" in page
-    assert "its loop on the motor's curve" in page
-    assert "for a fluctuation of 2 %" in page
-    plan = dx.explain(str(place))
-    assert any(one["what"] == "steady state on a motor" for one in plan["also"])
 
 
 def test_a_motor_is_read_from_a_file_as_loads_are_and_swept_into_a_store(tmp_path, monkeypatch):
