@@ -10,7 +10,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.simulation.coordinate import EDGE
-from desaxe.simulation.loops import state
+from desaxe.simulation.loops import law
 from tests.motions import true_end
 from tests.simulation.test_simulate import CRANK, LOADED, PRESS, ROCKER
 
@@ -207,7 +207,7 @@ def test_friction_of_none_counts_as_designs():
 
 
 def test_the_edge_is_the_same_in_both():
-    assert f"{EDGE:g}" in Path(state.__file__).read_text(encoding="utf-8")
+    assert f"{EDGE:g}" in Path(law.__file__).read_text(encoding="utf-8")
 
 
 @pytest.mark.thorough

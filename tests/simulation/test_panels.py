@@ -1,14 +1,15 @@
 """Motions under a torque of t, theta and omega in one call: those of one at a time, and of arbs."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 
 import desaxe as dx
 from benchmarks.rows import cranks
-from desaxe.simulation.loops import state
-from desaxe.simulation.loops.compiled import DesignFamily, motions, packed
+from desaxe.simulation.loops import law as loops
+from desaxe.simulation.loops.compiled import DesignFamily, packed, records_of, run
 from desaxe.simulation.loops.motions import designs
 from desaxe.simulation.loops.torque import compiled
 from desaxe.simulation.model import form_of
@@ -85,22 +86,32 @@ def test_the_end_of_a_motion_against_arbs():
 def test_machine_code_has_the_values_of_plain_python():
     """A crank of 1 kg m^2 under 3 + t N m, from rest; but for fused products."""
     kernel, torque = DesignFamily(form_of({}), (("ec", 0.0),)).kernel(), compiled(lambda t: 3.0 + t)
-    data = packed(kernel, dict.fromkeys(kernel.scalars, 0.0) | {"AB": 0.1, "BC": 0.3, "I_crank": 1.0}, 2)
-    law = np.zeros((2, state.ENERGY + 1))
-    law[:, state.KERNEL], law[:, state.THETA0] = kernel.code.address, 0.5
-    law[:, state.FIRST], law[:, state.LAST] = (-math.inf, -1000.0), (math.inf, 1000.0)  # over angles, in time
-    law[:, state.TORQUE], law[:, state.TORQUE + 1] = state.FUNCTION, torque.address
-    times, how = np.array([0.0, 1e-3, 0.3, 2.0]), np.array([1e-10, 2.0, 1000.0, 1.0])
-    nothing = np.empty((2, 0, 3)), np.empty(0), np.empty((2, 0, 15))
+    inputs = dict.fromkeys(kernel.scalars, 0.0) | {"AB": 0.1, "BC": 0.3, "I_crank": 1.0}
+    law = np.zeros((2, loops.TERMS + loops.TERM))
+    law[:, loops.KERNEL], law[:, loops.THETA0] = kernel.code.address, 0.5
+    law[:, loops.FIRST], law[:, loops.LAST] = (-math.inf, -1000.0), (math.inf, 1000.0)
+    law[:, loops.COUNT], law[:, loops.CALLS], law[:, loops.TERMS + loops.FACTOR] = 1.0, 1.0, 1.0
+    piece = loops.FUNCTION, torque.address, -math.inf, math.inf, 1.0, 1.0
+    law[:, loops.TERMS + loops.KIND : -1] = piece
+    arguments = {
+        "law": law, "data": packed(kernel, inputs, 2), "kinks": np.empty((2, 0, 3)), "knots": np.empty(0),
+        "sheets": np.empty((2, 0, 15)), "table": TABLE, **records_of(64, law.shape[1]),
+        "times": np.array([0.0, 1e-3, 0.3, 2.0]), "how": np.array([1e-10, 2.0, 1000.0]),
+    }  # fmt: skip
     answers = []
-    for run in (motions(), designs):
-        outs = np.zeros((2, 3, 4)), np.full(2, -1, np.int8), np.empty((2, 4))
-        with np.errstate(all="ignore"):  # the change of the first torques is from whatever the room had
-            run(law.copy(), data, *nothing, times, how, TABLE, *outs)
-        answers.append(outs[0])
-        assert outs[1].tolist() == [0, 0]
-        assert outs[2][:, 0].tolist() == [2.0, 2.0]
+    for code in (partial(run, designs), designs):
+        outs = {
+            "history": np.zeros((2, 3, 4)),
+            "status": np.full(2, -1, np.int8),
+            "numbers": np.empty((2, 4)),
+        }
+        with np.errstate(all="ignore"):
+            code(**arguments, **outs)
+        answers.append(outs["history"])
+        assert outs["status"].tolist() == [0, 0]
+        assert outs["numbers"][:, 0].tolist() == [2.0, 2.0]
     np.testing.assert_allclose(*answers, rtol=1e-10)
+    times = arguments["times"]
     right = [0.5 + 1.5 * times**2 + times**3 / 6.0, 3.0 * times + 0.5 * times**2, 3.0 + times]
     for design in answers[0]:
         np.testing.assert_allclose(design, right, rtol=1e-9)

@@ -1,26 +1,28 @@
 """The equation of motion of a crankshaft: inertia, gravity's torque and that of loads and guides are sums.
 
-The loads of all sliders, F_Y dY/dtheta, less the friction of all guides are one torque, in the law's place
-for the force of a slider whose travel is the crank angle itself. With c and k of `simulation.law`, and p the
-sign of its normal force, each guide takes
+The loads of all sliders, F_Y dY/dtheta, less the friction of all guides are one torque on the shaft. With c
+and k of `simulation.law`, and p the sign of its normal force, each guide takes
 
     c |N| = s (n0 + n1 alpha),    s = c p/(1 - k p),    alpha = (Q - sum s n0)/(M + sum s n1),
 
 and the signs are those with which alpha agrees.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from math import nan
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..loads.angles import cycle
+from ..loads.load import Load
 from ..mechanism.closed import TURN
 from ..mechanism.messages import message_of
 from ..simulation.checks import design_values, drive_of, model_of
 from ..simulation.coordinate import Coordinate
-from ..simulation.drive import ConstantCurve, Curve, Slopes, difference
-from ..simulation.model import NOTHING, Actuation, Model, Still
+from ..simulation.drive import NOTHING, Acting, Actuation, Called, kinks_of, needs_of
+from ..simulation.loops.law import TORQUE
+from ..simulation.model import Model
 from ..support.deadline import Deadline
 from .sums import SliderSums
 
@@ -29,98 +31,90 @@ AT_LIMIT = 1e-9  # rad
 
 
 class Piece(NamedTuple):
-    """A slider in the motion: its model, the loads that hold, the angle of the shaft at which it begins."""
+    """A slider in the motion: its model, its loads, the angle of the shaft at which it begins."""
 
     model: Model
     loads: Actuation
     firing: float
 
+    def force(self, acting: Acting, *state: Any) -> Any:
+        """The value of one of its loads."""
+        slider = self.model.slider_of()
+        return sum(factor * Called(part, slider).at(*state) for factor, part in acting.terms)
 
-class ShaftTorque(Curve):
-    """The torque of the loads and guides of all sliders on the shaft.
 
-    direction   in which the crank turns, which friction opposes; 0: as omega says
-    """
+class ShaftTorque(Called):
+    """The torque of the loads and guides of all sliders on the shaft."""
 
-    def __init__(self, pieces: Sequence[Piece], shaft: "ShaftModel", torque: Curve, direction: float) -> None:
-        self.pieces, self.shaft, self.torque, self.direction = pieces, shaft, torque, direction
-        self.depends_on_time = any(curve.depends_on_time for one in pieces for curve in one.loads)
+    directed = True
 
-    def at(self, t: Any, theta: Any, omega: Any) -> Any:
+    def __init__(self, shaft: "ShaftModel") -> None:
+        self.shaft = shaft
+        parts = [part for one in shaft.pieces for acting in one.loads for _, part in acting.terms]
+        needs = (name for part in parts for name in needs_of(part))
+        self.needs = tuple(dict.fromkeys(("theta", *needs, *(("omega",) if shaft.rubs else ()))))
+        self.cycle = cycle({str(k): part for k, part in enumerate(parts) if isinstance(part, Load)})
+
+    def at(self, t: Any, theta: Any, omega: Any, direction: float = 0.0) -> Any:
         """The loads, and what friction takes."""
         push = sum(
-            one.loads.F_Y.at(t, theta - one.firing, omega) * one.model.slider(theta - one.firing)[2]
-            for one in self.pieces
+            one.force(one.loads.F_Y, t, theta - one.firing, omega, direction)
+            * one.model.slider(theta - one.firing)[2]
+            for one in self.shaft.pieces
         )
-        return push - self._taken(t, theta, omega, push) if self.shaft.rubs else push
+        return push - self._taken(t, theta, omega, direction, push) if self.shaft.rubs else push
 
-    def _taken(self, t: Any, theta: Any, omega: Any, push: Any) -> Any:
+    def _taken(self, t: Any, theta: Any, omega: Any, direction: float, push: Any) -> Any:
         """The torque of friction; NaN where no signs of the normal forces agree, or no forces balance."""
-        still = self.shaft.still(theta)
-        push = push + self.torque.at(t, theta, omega) - still.weight - 0.5 * still.inertia_slope * omega**2
-        guides = [self._guide(one, t, theta - one.firing, omega) for one in self.pieces if one.model.mu]
+        still, steeper, weight, *_ = self.shaft.quantities(theta)
+        torque = Called(self.shaft.drive.torque.value, self.shaft.slider_of()).at(t, theta, omega)
+        push = push + torque - weight - 0.5 * steeper * omega**2
+        rubbing = [one for one in self.shaft.pieces if one.model.mu]
+        guides = [_guide(one, t, theta - one.firing, omega, direction) for one in rubbing]
         normal, by_alpha, arm, wedge = (np.array(rows) for rows in zip(*guides, strict=True))
-        alpha, pressed = push / still.inertia, np.zeros(normal.shape)
+        alpha, pressed = push / still, np.zeros(normal.shape)
         with np.errstate(all="ignore"):
             for _ in range(2 * len(guides) + 2):
                 before, pressed = pressed, np.copysign(1.0, normal + by_alpha * alpha)
                 if (before == pressed).all():
                     break
                 share = arm * pressed / (1.0 - wedge * pressed)
-                inertia = still.inertia + (share * by_alpha).sum(0)
+                inertia = still + (share * by_alpha).sum(0)
                 alpha = (push - (share * normal).sum(0)) / inertia
             good = ((before == pressed) & (wedge * pressed < 1.0)).all(0) & (inertia > 0.0)
-        return np.where(good, push - still.inertia * alpha, nan)
+        return np.where(good, push - still * alpha, nan)
 
-    def _guide(self, one: Piece, t: Any, theta: Any, omega: Any) -> tuple[Any, ...]:
-        """Normal force without friction at alpha = 0, its slope by alpha, arm c and wedge k of a guide."""
-        forces = (curve.at(t, theta, omega) for curve in one.loads[1:])
-        normal, by_alpha, _, lean = one.model.contact(theta, omega, *map(np.asarray, forces))
-        turning = self.direction or np.copysign(1.0, omega)
-        travel = one.model.slider(theta)[2]
-        arm = one.model.mu * np.abs(travel) * turning
-        return np.broadcast_arrays(normal, by_alpha, arm, one.model.mu * lean * np.sign(travel) * turning)
-
-    def slopes(self, t: Any, theta: Any, omega: Any, value: Any = None) -> Slopes:
-        """The torque and its derivatives, by differences under friction."""
-        if self.shaft.rubs:
-            value = self.at(t, theta, omega) if value is None else value
-            size = float(np.max(np.abs(omega)))
-            by_theta = difference(lambda x: self.at(t, x, omega), theta, 1.0, value)
-            return Slopes(value, by_theta, difference(lambda x: self.at(t, theta, x), omega, size, value))
-        total: list[Any] = [0.0, 0.0, 0.0]
-        for model, loads, firing in self.pieces:
-            force, still = loads.F_Y.slopes(t, theta - firing, omega), model.still(theta - firing)
-            by_theta = force.theta * still.travel + force.value * still.bend
-            parts = force.value * still.travel, by_theta, force.omega * still.travel
-            total = [before + part for before, part in zip(total, parts, strict=True)]
-        return Slopes(*total)
-
-    def ahead(self, theta: float, omega: float, direction: float, growing: float = 1.0) -> Curve:
-        """The pieces of all loads that hold from a state on."""
-        state = omega, direction, growing
-        pieces = [one._replace(loads=one.loads.ahead(theta - one.firing, *state)) for one in self.pieces]
-        return ShaftTorque(pieces, self.shaft, self.torque.ahead(theta, *state), direction)
+    @property
+    def kinks(self) -> tuple[float, Any]:
+        """The angles of the shaft at which pieces of a load meet, and friction turns round."""
+        result = list[float]()
+        for model, loads, firing in self.shaft.pieces:
+            kinks = [kinks_of(part, model.slider_of()) for acting in loads for _, part in acting.terms]
+            kinks += [(TURN, np.array([*model.dead_centres().values()] if model.mu else []))]
+            for period, angles in kinks:
+                for k in range(max(1, round(self.cycle / period))):
+                    result += (angles + firing + k * period).tolist()
+        return self.cycle, np.array(result)
 
     def moves(self, theta: float) -> Mapping[str, float]:
         """By how much inputs, and phases, move a kink at an angle of the shaft."""
         return self.shaft.moves(theta)
 
-    def kinks(self, lengths: tuple[float, ...], branch: int) -> list[tuple[float, float]]:
-        """The angles of the shaft at which pieces of a load meet, and friction turns round."""
-        result = []
-        for model, loads, firing in self.pieces:
-            own = [kink for curve in loads for kink in curve.kinks(model.lengths, model.branch)]
-            own += [(angle, TURN) for angle in model.dead_centres().values() if model.mu]
-            result += [(angle + firing, period) for angle, period in own]
-        return result
+
+def _guide(one: Piece, t: Any, theta: Any, omega: Any, direction: float) -> tuple[Any, ...]:
+    """Normal force without friction at alpha = 0, its slope by alpha, arm c and wedge k of a guide."""
+    forces = (one.force(acting, t, theta, omega, direction) for acting in one.loads[1:])
+    normal, by_alpha, _, phi = one.model.contact(theta, omega, *map(np.asarray, forces))
+    turning, travel = direction or np.copysign(1.0, omega), one.model.slider(theta)[2]
+    wedge = one.model.mu * one.model.branch * np.tan(phi) * np.sign(travel) * turning
+    return np.broadcast_arrays(normal, by_alpha, one.model.mu * np.abs(travel) * turning, wedge)
 
 
 class ShaftModel(Model):
     """Several sliders on a crankshaft as a model of the motion, between the limit angles of all."""
 
     def __init__(
-        self, sliders: SliderSums, theta0: float, torque: Curve, moves: Moves, deadline: Deadline
+        self, sliders: SliderSums, theta0: float, torque: Acting, moves: Moves, deadline: Deadline
     ) -> None:
         self.sliders, self.mu, self.branch, self.moves = sliders, 0.0, 1, moves
         self.values = {"AB": 1.0}  # of the travel
@@ -135,7 +129,8 @@ class ShaftModel(Model):
             self.pieces.append(Piece(model, loads, firing))
         self.rubs = any(one.model.mu for one in self.pieces)
         self.coordinate = self._coordinate()
-        self.drive = Actuation(torque, ConstantCurve(0.0), ShaftTorque(self.pieces, self, torque, 0.0))
+        self.drive = Actuation(torque, Acting(0.0), Acting(0.0))
+        self.terms = [*self._terms(), (TORQUE, 1.0, ShaftTorque(self))]
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A pickle has the sliders but not what drives them, which may be any function."""
@@ -176,15 +171,15 @@ class ShaftModel(Model):
                 result |= {f"phase[{k}]": 1.0, f"bank[{k}]": 1.0}
         return result
 
-    def still(self, theta: Any) -> Still:
-        """Inertia and gravity's torque with their slopes; the travel is the crank angle."""
-        each = [one.model.still(theta - one.firing) for one in self.pieces]
-        inertia, steeper, weight, heavier, *_ = map(sum, zip(*each, strict=True))
-        return Still(inertia + float(self.sliders.I_shaft), steeper, weight, heavier, 1.0, 0.0)
+    def family(self) -> None:
+        """There is no kernel of the shaft."""
 
-    def potential(self, theta: Any) -> Any:
-        """The potential energy [J]."""
-        return sum(one.model.potential(theta - one.firing) for one in self.pieces)
+    def quantities(self, theta: Any) -> tuple[Any, ...]:
+        """Inertia and gravity's torque with their slopes, the potential energy; there is no slider."""
+        each = (one.model.quantities(theta - one.firing) for one in self.pieces)
+        inertia, steeper, weight, heavier, _, _, potential, _ = map(sum, zip(*each, strict=True))
+        none = np.zeros(np.shape(theta))
+        return inertia + float(self.sliders.I_shaft), steeper, weight, heavier, none, none, potential, none
 
     def dead_centres(self) -> dict[str, float]:
         """There are none of the shaft."""

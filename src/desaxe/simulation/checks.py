@@ -23,8 +23,8 @@ from ..runtime.request import several
 from ..support.deadline import Deadline
 from ..support.shown import shown
 from .coordinate import FREE, Coordinate, arc_around, inside
-from .drive import ConstantCurve, Curve, FunctionCurve, curve_of
-from .model import Actuation, Model
+from .drive import Acting, Actuation, UserFunction
+from .model import Model
 from .torque_derivative import TorqueDerivative
 
 TIME_AND_CRANK = ("t", "theta", "omega")
@@ -81,18 +81,18 @@ def follows_the_slider(torque: Any) -> bool:
     return not set(arguments_of("torque", torque, ARGUMENTS)) <= set(TIME_AND_CRANK)
 
 
-def curve(
+def acting(
     name: str, value: Any, unit: str, deadline: Deadline, derivative: TorqueDerivative | None = None
-) -> Curve:
+) -> Acting:
     """A torque or force along the motion; a function is checked wherever it is called."""
     if not callable(value):
-        return ConstantCurve(scalar(name, value, unit, limit="a finite number or a function"))
+        return Acting(scalar(name, value, unit, limit="a finite number or a function"))
     if isinstance(value, Motor):
-        return curve_of(value)
+        return Acting(value)
     arguments = () if isinstance(value, LoadOverMotion) else arguments_of(name, value, ARGUMENTS)
     if isinstance(value, LoadOverMotion) or (arguments == ("theta",) and derivative is None):
-        return curve_of(as_load(name, value))
-    return FunctionCurve(name, value, arguments, unit, deadline, derivative)
+        return Acting(as_load(name, value))
+    return Acting(UserFunction(name, value, arguments, unit, deadline, derivative))
 
 
 def drive_of(
@@ -100,9 +100,9 @@ def drive_of(
 ) -> Actuation:
     """Torque and forces; what is not given is 0. Functions are called within the time of a simulation."""
     return Actuation(
-        curve("torque", torque, "N*m", deadline, derivative),
-        curve("F_X", 0.0 if F_X is None else F_X, "N", deadline),
-        curve("F_Y", 0.0 if F_Y is None else F_Y, "N", deadline),
+        acting("torque", torque, "N*m", deadline, derivative),
+        acting("F_X", 0.0 if F_X is None else F_X, "N", deadline),
+        acting("F_Y", 0.0 if F_Y is None else F_Y, "N", deadline),
     )
 
 

@@ -12,16 +12,16 @@ from ..mechanism.messages import Message, amount, named
 from ..support.roots import roots
 from .checks import SMALL
 from .law import state_of
+from .loops.compiled import NODES
 from .loops.cuts import KINK as CUT_AT_ANGLE
 from .model import Model
-from .panel import NODES, Record, basis
+from .panel import Record, basis
 from .result import DONE, LIMIT, NO_INERTIA, Event
 
 Array = NDArray[np.float64]
 NEAR = 1e-9  # rad: an angle that a stretch starts from is not reached at once
 Q, V, W = range(3)
 NEVER = -1  # of an angle that does not end the motion
-KINK = "kink of a load"  # where the integration starts again: no event to report
 STANDSTILL, JAM = "standstill", "friction jams"
 
 
@@ -44,9 +44,6 @@ def marks_of(model: Model, until: Sequence[float]) -> list[Mark]:
     first, last = model.coordinate.first, model.coordinate.last
     if first > -inf:
         marks += [Mark("limit", first, "first", status=LIMIT), Mark("limit", last, "last", status=LIMIT)]
-    for curve in model.drive:
-        kinks = curve.kinks(model.lengths, model.branch)
-        marks += [Mark(KINK, angle, every=period) for angle, period in kinks]
     return marks
 
 

@@ -9,12 +9,11 @@ from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
 from .checks import LEAST_RTOL
-from .drive import LOADED, ConstantCurve, Curve
 from .events import Q, W
-from .law import Law, state_of
-from .loops.march import RESTING
+from .law import Law, alpha_of, state_of
+from .loops.compiled import NODES
 from .march import March
-from .panel import NODES, basis
+from .panel import basis
 from .result import FAILED, LIMIT, REST, Simulation
 
 Array = NDArray[np.float64]
@@ -32,11 +31,11 @@ def integrated(run: March, names: Sequence[str], times: Any, inputs: Mapping[str
     """The result of a motion; inputs: its inputs, for `names`."""
     t = np.asarray(np.linspace(0.0, run.t, SAMPLES) if times is None else times[times <= run.t])
     motion = Motion(run)
-    state = dict(zip(("theta", "omega", "alpha"), motion.histories(t, run.law_of), strict=True))
+    state = dict(zip(("theta", "omega", "alpha"), motion.histories(t, run.law), strict=True))
     result = {"t": t, **state}
     if names:
-        curves = () if "sliders" in inputs else zip(FORCES, run.model.drive[1:], strict=True)
-        loads = {name: _along(curve, t, state["theta"], state["omega"]) for name, curve in curves}
+        each = () if "sliders" in inputs else zip(FORCES, run.model.drive[1:], strict=True)
+        loads = {name: run.model.along(acting, t, state["theta"], state["omega"]) for name, acting in each}
         result |= evaluate(list(names), **{**state, **inputs, **loads})
     residual, rounded = energy_residual(run)
     told = told_of(residual, rounded, run.settings.rtol)
@@ -65,14 +64,11 @@ class Motion:
         moved = np.einsum("kt,tik->it", rows, self.record.series[which]) * (s != 0.0)
         return which, self.record.y[which].T + moved
 
-    def histories(self, t: Array, law_of: Callable[[int], Law]) -> tuple[Array, Array, Array]:
-        """Angle, speed and acceleration at instants; law_of: a panel."""
+    def histories(self, t: Array, law: Law) -> tuple[Array, Array, Array]:
+        """Angle, speed and acceleration at instants."""
         theta, omega = self.states(t)
-        which, ends = np.searchsorted(self.stop[:-1], t), self.record.ends
-        law = Law(self.model, self.model.drive, *ends[which, 2:].T)
-        alpha = np.where(ends[which, 0] == RESTING, 0.0, law.alpha(t, theta, omega))
-        for k in np.flatnonzero((t == self.start[which]) | (t == self.stop[which])).tolist():
-            alpha[k] = law_of(int(which[k])).alpha(t[k], theta[k], omega[k])  # pieces may meet there
+        which, (q, v, _) = self.at(t)
+        alpha = alpha_of(law.at(t, q, v, self.record.laws, which)) * ~self.record.rests[which]
         if self._at_event:
             _set_end(self, t, alpha)
         return theta, omega, alpha
@@ -126,13 +122,6 @@ def _set_end(motion: Motion, t: Array, alpha: Array) -> None:
         step = 1e-4 * float(motion.stop[-1] - motion.start[-1])
         q, before = motion.at(np.array([motion.t, motion.t - step]))[1][Q]
         alpha[ends] = -half * copysign(1.0, q) * ((q - before) / step) ** 2
-
-
-def _along(curve: Curve, t: Array, theta: Array, omega: Array) -> Any:
-    """A load at every instant of a history; one that `evaluate` knows as it is, with its slope."""
-    if isinstance(curve, LOADED):
-        return curve.load
-    return curve.value if isinstance(curve, ConstantCurve) else curve.at(t, theta, omega)
 
 
 # ---- the energy residual: where it is unusual, step control was deceived ----------------------------

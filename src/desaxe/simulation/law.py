@@ -15,19 +15,28 @@ link 4). alpha eliminated,
     N = N_free + K |N|,    N_free = n0 + n1 alpha_free,    K = k - c n1 / M,
 
 with alpha_free the acceleration without friction: one solution, which has the sign of N_free, where
--1 <= K sign(N_free) < 1; none above (the friction jams) and two below.
+-1 <= K sign(N_free) < 1; none above (the friction jams) and two below. Compiled loops evaluate all that
+(`loops.law`); here they get the numbers of a design, and functions for what has no closed form.
 """
 
+from collections.abc import Callable
+from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .model import Actuation, Model, Still
+from .drive import Called
+from .loops import law as at
+from .loops.compiled import NODES, run
+from .loops.motions import LAW, single
+from .model import Model
+from .pieces import FunctionPieces, LawNumbers
 
 Array = NDArray[np.float64]
 JAMS_AT = 1.0 - 1e-6  # of K sign(N): a million times the force without friction counts as none
-NOISE = 1e-12  # of the terms of N_free: below it, its sign is rounding
+_CALLED = CFUNCTYPE(c_int64, c_int64, c_int64, c_int64)
 
 
 class State(NamedTuple):
@@ -37,185 +46,104 @@ class State(NamedTuple):
     omega: Any
 
 
-class Contact(NamedTuple):
-    """The guide at an instant, for one way of turning; or at several."""
-
-    inertia: Any
-    alpha_free: Any
-    normal_free: Any
-    noise: Any
-    arm: Any  # c [m]
-    wedge: Any  # K
-    by_omega: Any  # of the normal force
-    by_alpha: Any
-
-    @property
-    def pressed(self) -> Any:
-        """The sign of the normal force."""
-        return np.copysign(1.0, self.normal_free)
-
-    def torque(self, pressed: Any) -> Any:
-        """c |N| [N m] of the solution on one side of the guide."""
-        return self.arm * pressed * self.normal_free / (1.0 - pressed * self.wedge)
-
-    @property
-    def alpha(self) -> Any:
-        """The acceleration with friction [rad/s^2]."""
-        return self.alpha_free - self.torque(self.pressed) / self.inertia
-
-    @property
-    def solutions(self) -> Any:
-        """The number of force balances."""
-        share = self.wedge * self.pressed
-        return np.where(share >= JAMS_AT, 0, np.where(share < -1.0, 2, 1))
-
-
-class Guide(NamedTuple):
-    """The guide where it rubs: normal force without friction and K, on the side that is held; rounding."""
-
-    normal: Array
-    wedge: Array
-    noise: Array
-
-
-class Rates(NamedTuple):
-    """The rates of q, v and W at instants, the speed, and the guide where it rubs."""
-
-    q: Array
-    v: Array
-    work: Array
-    omega: Array
-    guide: Guide | None
-
-
-class Here(NamedTuple):
-    """Torque, forces and inertia at instants."""
-
-    t: Any
-    theta: Any
-    slope: Any  # of theta, by q
-    still: Still
-    root: Any  # of M_eff
-    omega: Any
-    torque: Any
-    force: Any
-    push: Any
-    guide: Contact | None
-    pressed: float
-
-    @property
-    def rates(self) -> Rates:
-        """The rates of the state."""
-        speed, rate = self.omega / self.slope, (self.push - self.still.weight) / self.root
-        guide, pressed = self.guide, self.pressed
-        held = guide and Guide(pressed * guide.normal_free, pressed * guide.wedge, guide.noise)
-        return Rates(speed, rate, self.push * self.omega, self.omega, held)
-
-
 class Law:
-    """The motion between two cuts: smooth pieces of the loads; with friction three signs held.
+    """The law of one design in compiled loops: its numbers, and the functions that they call.
 
-    direction   in which the crank turns; side: the sign of Y'; pressed: that of the normal force
+    error, stops   what a function has raised, and whether that ends the motion
     """
 
-    rests = False
+    def __init__(self, model: Model) -> None:
+        self.model, self.stops = model, False
+        self.error: BaseException | None = None
+        self._kept: list[Any] = []
+        flat = {name: np.array([x]) for name, x in {**model.values, "mu": model.mu}.items()}
+        arc = np.array([[model.coordinate.half, model.coordinate.first, model.coordinate.last]])
+        terms = [(arm, factor, self._form(part)) for arm, factor, part in model.terms]
+        self.known = LawNumbers(flat, model.branch, arc, model.family(), terms)
+        self.numbers: Array = self.known.law[0]
+        self.numbers[at.ANSWER] = self._address(self._answer)
+        called = [part.needs for *_, part in model.terms if isinstance(part, Called)]
+        self.timed = any("t" in needs for needs in called)
+        steady = all(isinstance(part, float) for *_, part in model.terms)
+        self.numbers[at.WAITS] = 0.0 if steady else 2.0 if self.timed else 1.0
 
-    def __init__(
-        self, model: Model, drive: Actuation, direction: float = 0.0, side: float = 0.0, pressed: float = 0.0
-    ) -> None:
-        self.model, self.drive = model, drive
-        self.direction, self.side, self.pressed = direction, side, pressed
-        self.rubs = model.mu != 0.0
+    def at(self, t: Any, q: Any, v: Any, laws: Array, which: Any = None) -> Array:
+        """The rows of `loops.law` at states; laws: numbers, or rows of them of which `which` says the row."""
+        t, q, v = (np.ascontiguousarray(part, float) for part in np.broadcast_arrays(*np.atleast_1d(t, q, v)))
+        which = np.zeros(t.size) if which is None else np.ascontiguousarray(which, float)
+        out, self.error = np.empty((at.ROWS, t.size)), None
+        laws = np.ascontiguousarray(np.atleast_2d(laws))
+        code = run(single, work=LAW, laws=laws, which=which, t=t, q=q, v=v, data=self.known.data, out=out)
+        if code == at.STOP and self.error is not None:
+            raise self.error
+        return out
 
-    def place(self, q: Any) -> tuple[Any, Any]:
-        """theta and dtheta/dq, NaN beyond a limit angle at which the inertia grows."""
-        arc = self.model.coordinate
-        if arc.half:
-            slope = arc.half * np.cos(q)
-            return arc.middle + arc.half * np.sin(q), np.where(np.abs(q) < 0.5 * np.pi, slope, np.nan)
-        return (arc.clamped(q) if arc.bounded else q), 1.0
+    def alpha(self, t: float, theta: float, omega: float, law: Array) -> float:
+        """The acceleration [rad/s^2] at an instant."""
+        v = omega * np.sqrt(self.model.inertia(theta))
+        return float(alpha_of(self.at(t, self.model.coordinate.q(theta), v, law))[0])
 
-    def here(self, t: Any, q: Any, v: Any) -> "Here":
-        """Torque, forces and inertia at instants."""
-        theta, slope = self.place(q)
-        still = self.model.still(theta)
-        root = np.sqrt(still.inertia)
-        omega = v / root
-        torque, force = self.drive.torque.at(t, theta, omega), self.drive.F_Y.at(t, theta, omega)
-        push, guide = torque + force * still.travel, None
-        if self.rubs:
-            guide = self.guide(t, theta, omega, still, push)
-            push = push - guide.torque(self.pressed)
-        return Here(t, theta, slope, still, root, omega, torque, force, push, guide, self.pressed)
+    # ---- what the loops call ------------------------------------------------------------------
 
-    def rates(self, t: Any, q: Any, v: Any) -> Rates:
-        """The rates at instants."""
-        return self.here(t, q, v).rates
+    def _form(self, part: Any) -> Any:
+        """A part of the drive as `LawNumbers` takes it."""
+        if isinstance(part, float):
+            return np.array([part])
+        if not isinstance(part, Called):
+            return part
 
-    def jacobian(self, here: "Here", q: Any) -> tuple[Any, Any, Any, Any]:
-        """The derivatives of the rates of q and v by q and v, good enough for an iteration.
+        def values(direction: float, rows_at: int, apart: int, count: int) -> None:
+            rows = _memory(rows_at, 3 * apart + count)
+            columns = np.array([rows[k * apart : k * apart + count] for k in range(3)])
+            t, theta, omega = columns[:, :1] if (columns[:, 0] == columns[:, -1]).all() else columns
+            rows[3 * apart :] = part.at(t, theta, omega, direction)
 
-        Those of friction are of its torque by alpha and omega alone.
-        """
-        t, theta, slope, still, root, omega, *_ = here
-        torque = self.drive.torque.slopes(t, theta, omega, here.torque)
-        force = self.drive.F_Y.slopes(t, theta, omega, here.force)
-        by_theta = torque.theta + force.theta * still.travel + force.value * still.bend - still.weight_slope
-        by_omega = torque.omega + force.omega * still.travel
-        if here.guide is not None:
-            guide = here.guide
-            share = guide.arm * self.pressed / (1.0 - self.pressed * guide.wedge)
-            free = (by_omega - still.inertia_slope * omega) * guide.by_alpha / guide.inertia
-            by_theta = by_theta * (1.0 - share * guide.by_alpha / guide.inertia)
-            by_omega = by_omega - share * (guide.by_omega + free)
-        steeper = 0.5 * still.inertia_slope / still.inertia  # of log(sqrt(M))
-        q_by_q = -omega * steeper
-        if self.model.coordinate.half:
-            q_by_q = q_by_q + omega / slope * np.tan(q)
-        gain = by_theta - by_omega * omega * steeper - (here.push - still.weight) * steeper
-        return q_by_q, 1.0 / (root * slope), gain / root * slope, by_omega / still.inertia
+        needs = set(part.needs)
+        varies = float(bool(needs - {"t", "omega"})), float(not needs.isdisjoint({"omega", "V_C"}))
+        ways = (1.0, -1.0) if part.directed else (0.0,)
+        first, *_, last = [self._address(partial(values, way)) for way in ways * 2]
+        return FunctionPieces((first, last), varies, *part.kinks)
 
-    def guide(self, t: Any, theta: Any, omega: Any, still: Still, push: Any) -> Contact:
-        """The contact at the guide, for the way of turning and the sign of Y' that are held."""
-        model, drive = self.model, self.drive
-        forces = (np.asarray(curve.at(t, theta, omega)) for curve in (drive.F_X, drive.F_Y))
-        alpha_free = (push - still.weight - 0.5 * still.inertia_slope * omega * omega) / still.inertia
-        normal, by_alpha, by_omega, lean = model.contact(theta, omega, *forces)
-        arm = model.mu * self.side * self.direction * still.travel
-        wedge = lean * model.mu * self.side * self.direction - arm * by_alpha / still.inertia
-        noise = NOISE * (abs(normal) + abs(by_alpha * alpha_free))
-        free = normal + by_alpha * alpha_free
-        return Contact(still.inertia, alpha_free, free, noise, arm, wedge, by_omega, by_alpha)
+    def _answer(self, rows_at: int, guide_at: int, _: int) -> None:
+        """Fill in quantities, or the contact at the guide, where there is no kernel or it has no digits."""
+        rows = _memory(rows_at, at.ROWS * NODES).reshape(at.ROWS, NODES)
+        if not guide_at:
+            theta = rows[at.ANGLE]
+            theta = theta[:1] if theta[0] == theta[-1] else theta
+            for k, values in enumerate(self.model.quantities(theta)):
+                rows[k] = values
+            return
+        state = (rows[k] for k in (at.ANGLE, at.SPEED, at.ASIDE, at.PUSHED))
+        for row, values in zip(
+            _memory(guide_at, 4 * NODES).reshape(4, NODES), self.model.contact(*state), strict=True
+        ):
+            row[:] = values
 
-    def contact(self, t: Any, theta: Any, omega: Any) -> Contact:
-        """The contact at the guide at an instant, or at several."""
-        still = self.model.still(theta)
-        drive = self.drive
-        push = drive.torque.at(t, theta, omega) + drive.F_Y.at(t, theta, omega) * still.travel
-        return self.guide(t, theta, omega, still, push)
+    def _address(self, work: Callable[[int, int, int], None]) -> int:
+        """The address of a function; loops go on after an error of a load, and stop after all others."""
 
-    def alpha(self, t: Any, theta: Any, omega: Any) -> Any:
-        """The crank's acceleration [rad/s^2]: M alpha + M' omega^2/2 = Q."""
-        still = self.model.still(theta)
-        drive = self.drive
-        push = drive.torque.at(t, theta, omega) + drive.F_Y.at(t, theta, omega) * still.travel
-        if self.rubs:
-            push = push - self.guide(t, theta, omega, still, push).torque(self.pressed)
-        return (push - still.weight - 0.5 * still.inertia_slope * omega * omega) / still.inertia
+        def guarded(first: int, second: int, third: int) -> int:
+            if self.stops:
+                return at.STOP
+            try:
+                work(first, second, third)
+            except (ValueError, ArithmeticError) as raised:  # a load has no value: the panel may be shorter
+                self.error = raised
+                return at.NONE
+            except BaseException as raised:
+                self.error, self.stops = raised, True
+                return at.STOP
+            self.error = None
+            return 0
 
-    def with_drive(self, drive: Actuation) -> "Law":
-        """The law under other pieces of the loads."""
-        return Law(self.model, drive, self.direction, self.side, self.pressed)
+        self._kept.append(_CALLED(guarded))
+        return cast(self._kept[-1], c_void_p).value or 0
 
 
-class Resting(Law):
-    """The crank stands still, held by friction."""
-
-    rests = True
-
-    def alpha(self, t: Any, theta: Any, omega: Any) -> Any:
-        """Nothing moves."""
-        return 0.0 * theta
+def alpha_of(rows: Array) -> Array:
+    """The crank's acceleration [rad/s^2]: M alpha + M' omega^2/2 = Q."""
+    inertia, bent = rows[at.INERTIA], 0.5 * rows[at.INERTIA_SLOPE] * rows[at.SPEED] ** 2
+    return np.asarray((rows[at.RATE_V] * np.sqrt(inertia) - bent) / inertia)
 
 
 def state_of(model: Model, q: Any, v: Any) -> State:
@@ -226,3 +154,8 @@ def state_of(model: Model, q: Any, v: Any) -> State:
     with np.errstate(invalid="ignore", divide="ignore"):
         omega = np.where(inertia > 0.0, v / np.sqrt(inertia), 0.0)
     return State(theta, omega) if np.ndim(q) else State(float(theta), float(omega))
+
+
+def _memory(start: int, size: int) -> Array:
+    memory: Any = (c_double * size).from_address(start)
+    return np.frombuffer(memory)

@@ -3,12 +3,13 @@
 from collections.abc import Mapping
 from functools import lru_cache
 from math import copysign, cos, isnan, nan, sin
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.function import Function, function
+from ..loads.load import OverY
 from ..mechanism.closed import TURN
 from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
@@ -16,53 +17,19 @@ from ..mechanism.names import CENTRES, LENGTHS
 from ..mechanism.program import Variant
 from ..runtime.kernels import STRUCTURAL_ZEROS
 from .coordinate import Coordinate
-from .drive import ConstantCurve, Curve, SliderDesign
-from .loops.compiled import DesignFamily
+from .drive import NOTHING, Acting, Actuation, Called, Slider, UserFunction
+from .loops.compiled import NAMES, DesignFamily
+from .loops.law import FORCE, POTENTIAL, SIDEWAYS, TORQUE
+from .pieces import compiles
 
 Array = NDArray[np.float64]
 
-# Held still, T_in is the torque of gravity alone: loads on the slider are added by hand, for they may vary.
-STILL = ("M_eff", "M_eff_wrt_theta", "T_in", "T_in_wrt_theta", "Y_wrt_theta", "Y_wrt_theta_theta")
 CONTACT = ("N_C", "N_C_wrt_alpha", "N_C_wrt_omega", "phi")
 SLIDER = ("Y", "s", "Y_wrt_theta")
 
 
-class Still(NamedTuple):
-    """Functions of the angle alone: M_eff, the torque of gravity and Y', each with its slope."""
-
-    inertia: Any
-    inertia_slope: Any
-    weight: Any
-    weight_slope: Any
-    travel: Any
-    bend: Any
-
-
-class Actuation(NamedTuple):
-    """The torque [N m] and the forces on the slider [N] that drive the mechanism."""
-
-    torque: Curve
-    F_X: Curve
-    F_Y: Curve
-
-    @property
-    def steady(self) -> bool:
-        """True where all three are numbers."""
-        return all(isinstance(curve, ConstantCurve) for curve in self)
-
-    @property
-    def knots(self) -> tuple[float, ...]:
-        """Speeds at which pieces meet."""
-        return self.torque.knots
-
-    def ahead(self, theta: float, omega: float, direction: float, growing: float = 1.0) -> "Actuation":
-        """The pieces that hold from a state on: for this way of turning, and this sign of domega/dt."""
-        return Actuation(*(curve.ahead(theta, omega, direction, growing) for curve in self))
-
-
 CHANGE_POINT = 1e-6  # of the crank: so nearly across the guide a limit angle has no derivative
 KEPT = ("AB", "BC", *CENTRES)  # inputs that are passed where they are 0, too
-NOTHING = Actuation(ConstantCurve(0.0), ConstantCurve(0.0), ConstantCurve(0.0))
 
 
 @lru_cache(maxsize=256)
@@ -72,7 +39,7 @@ def _function(
     return function(names, inputs=inputs, **dict(fixed))
 
 
-class Model(SliderDesign):
+class Model:
     """One design: its inputs and functions of its state, and what drives it."""
 
     def __init__(
@@ -83,8 +50,7 @@ class Model(SliderDesign):
         loads = ("mu", "F_X", "F_Y")
         self._design = {n: v for n, v in values.items() if n not in loads and (v != 0.0 or n in KEPT)}
         self._calls: dict[tuple[str, ...], Function] = {}
-        for curve in drive:
-            curve.stand(self, self.lengths, branch)
+        self.terms = self._terms()
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A pickle has the design but not what drives it, which may be any function."""
@@ -101,23 +67,47 @@ class Model(SliderDesign):
         result: tuple[Any, ...] = call(*state.values(), *self._design.values())
         return result
 
-    def family(self) -> DesignFamily:
+    def family(self) -> DesignFamily | None:
         """The family of designs that share its kernels of the compiled loops."""
         return DesignFamily(form_of(self.values), fixed_zeros(self.values))
 
-    def still(self, theta: Any) -> Still:
-        """Inertia, gravity's torque and Y' at angles, with their slopes."""
-        return Still(*self._values(STILL, theta=theta))
+    def _terms(self) -> list[tuple[float, float, Any]]:
+        """Torque and forces: which, factor, and what they are, called where loops do not know it."""
+        slider = self.slider_of()
+        each = ((TORQUE, self.drive.torque), (FORCE, self.drive.F_Y), (SIDEWAYS, self.drive.F_X))
+        every = [(arm, factor, part) for arm, acting in each for factor, part in acting.terms]
+        for _, _, part in every:
+            if isinstance(part, OverY):
+                slider.zero(part)  # or it has no such dead centre
+        known = [isinstance(part, float) or compiles(part) for *_, part in every]
+        return [
+            (arm, factor, part if simple else Called(part, slider))
+            for (arm, factor, part), simple in zip(every, known, strict=True)
+            if part != 0.0
+        ]
+
+    def along(self, acting: Acting, t: Any, theta: Any, omega: Any) -> Any:
+        """A force at every instant of a history; a number or a load as it is."""
+        if not isinstance(acting.value, UserFunction):
+            return acting.value
+        return Called(acting.value, self.slider_of()).at(t, theta, omega)
+
+    def quantities(self, theta: Any) -> tuple[Any, ...]:
+        """The quantities that compiled loops take from their kernel, in its order."""
+        return self._values(NAMES, theta=theta)
+
+    def slider_of(self) -> Slider:
+        """The slider, for loads that follow it."""
+        return Slider(self.lengths, self.branch, self.slider)
 
     def slider(self, theta: Any) -> tuple[Any, Any, Any]:
         """Y, s and Y_wrt_theta at angles."""
         Y, s, slope = self._values(SLIDER, theta=theta)
         return Y, s, slope
 
-    def contact(self, theta: Any, omega: Any, F_X: Any, F_Y: Any) -> tuple[Any, Any, Any, Any]:
-        """The normal force without friction at alpha = 0, its slopes by alpha and omega, branch tan(phi)."""
-        result = self._values(CONTACT, theta=theta, omega=omega, F_X=F_X, F_Y=F_Y)
-        return result[0], result[1], result[2], self.branch * np.tan(result[3])
+    def contact(self, theta: Any, omega: Any, F_X: Any, F_Y: Any) -> tuple[Any, ...]:
+        """The normal force without friction at alpha = 0, its slopes by alpha and omega, and phi."""
+        return self._values(CONTACT, theta=theta, omega=omega, F_X=F_X, F_Y=F_Y)
 
     @property
     def lengths(self) -> tuple[float, ...]:
@@ -139,11 +129,11 @@ class Model(SliderDesign):
 
     def inertia(self, theta: Any) -> Any:
         """The effective moment of inertia [kg m^2]."""
-        return self.still(theta).inertia
+        return self.quantities(theta)[0]
 
     def potential(self, theta: Any) -> Any:
         """The potential energy [J]."""
-        return self._values(("potential_energy",), theta=theta)[0]
+        return self.quantities(theta)[POTENTIAL]
 
     def dead_centres(self) -> dict[str, float]:
         """The crank angles at which the slider turns round, by name: rod and crank in line."""

@@ -10,12 +10,11 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from .law import Law
+from .loops.compiled import NODES
 from .loops.cuts import NO_CUT
 from .loops.march import RESTING
 
 Array = NDArray[np.float64]
-NODES = 16
 _X, _ = legendre.leggauss(NODES)
 PLACES = (_X + 1.0) / 2.0  # on [0, 1]
 SERIES = np.linalg.inv(legendre.legvander(_X, NODES - 1))  # values at the nodes -> Legendre series
@@ -47,22 +46,13 @@ def _basis_at(x: float, degree: int) -> list[float]:
     return values
 
 
-class Panel(NamedTuple):
-    """A solved panel of a motion: its law, start and end, and q, v and W at the start."""
-
-    law: Law
-    start: float
-    stop: float
-    y: tuple[float, ...]
-
-
 class Record(NamedTuple):
     """Panels one after the other, as `loops.march` records them, and q, v and W at the end."""
 
     heads: Array
     series: Array
-    rates: Array
     ends: Array
+    laws: Array
     last: Array
 
     @property
@@ -71,7 +61,12 @@ class Record(NamedTuple):
         return self.heads[:, 3:6]
 
     @property
+    def rests(self) -> NDArray[np.bool_]:
+        """True for panels on which nothing moves."""
+        return np.asarray(self.ends[:, 0] == RESTING)
+
+    @property
     def stretches(self) -> NDArray[np.intp]:
         """The number of the stretch of each panel: one law holds on it."""
-        new = (self.ends[:-1, 0] != NO_CUT) | (self.ends[1:, 0] == RESTING)
+        new = (self.ends[:-1, 0] != NO_CUT) | self.rests[1:]
         return np.concatenate([[0], np.cumsum(new)])

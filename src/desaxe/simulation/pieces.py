@@ -1,6 +1,6 @@
 """The law of designs as numbers for compiled loops, with the pieces of their loads.
 
-Pieces are rows of where they start, and their numbers for both ways (`loops.state.piece`). Over the slider's
+Pieces are rows of where they start, and their numbers for both ways (`loops.law.piece`). Over the slider's
 position they lie between the crank angles at which they meet.
 """
 
@@ -13,19 +13,23 @@ from numpy.typing import NDArray
 from ..compiler.llvm.loops import address
 from ..evaluation.evaluate import evaluate
 from ..loads.angles import crossings, zero_of
+from ..loads.elements import Spring
 from ..loads.load import OverY, TableOverTheta
 from ..loads.motors import Kloss, OverOmega
 from ..mechanism.closed import TURN
-from ..mechanism.closed.angles import dead_centres
+from ..mechanism.closed.angles import dead_centres, passages
 from ..mechanism.names import LENGTHS
 from .loops.compiled import DesignFamily, packed
-from .loops.state import (
+from .loops.law import (
+    CALLS,
     CONTACT,
     CONTACT_DATA,
+    COUNT,
     ENERGY,
     FUNCTION,
     HALF,
     KERNEL,
+    KIND,
     KLOSS,
     LEANS,
     MU,
@@ -33,11 +37,12 @@ from .loops.state import (
     OVER_THETA,
     OVER_Y,
     RUBS,
-    SHEETS,
+    SHEET,
     SLOTS,
+    TERM,
+    TERMS,
     TINY,
-    TORQUE,
-)
+)  # fmt: skip
 
 Array = NDArray[np.float64]
 
@@ -67,6 +72,9 @@ def table_sheet(load: TableOverTheta | OverOmega) -> LoadPieces:
 def meeting_angles(load: OverY, lengths: Sequence[Array], branch: int) -> Array:
     """The angles at a table's positions, and the dead centres where another table holds behind them."""
     angles = crossings(load, load.positions(smooth=True), lengths, branch)
+    if load.centre and np.any(lengths[1] > lengths[2]):  # a long crank takes the slider past the dead centre
+        zero = np.reshape(zero_of(load, lengths, branch), (-1, 1))
+        angles = np.concatenate([angles, passages(zero, lengths, branch)], axis=1)
     if load.inward is not None:
         angles = np.concatenate([angles, dead_centres(lengths)], axis=1)
     return angles
@@ -106,30 +114,55 @@ def _sheet(period: float, starts: Array, forth: Any, back: Any) -> LoadPieces:
     return LoadPieces(period, rows)
 
 
-def compiles(load: Any, AB: Any, BC: Any) -> bool:
+def compiles(load: Any) -> bool:
     """True for a load that is a list of pieces, or a closed form."""
-    if isinstance(load, OverY):  # past the inner dead centre a long crank takes the slider both ways
-        return load.centre != "Y_inner" or not np.any(AB > BC)
-    return isinstance(load, (TableOverTheta, OverOmega, Kloss))
+    return isinstance(load, (TableOverTheta, OverY, Spring, OverOmega, Kloss))
+
+
+class FunctionPieces(NamedTuple):
+    """A function at addresses for either way of turning.
+
+    varies   by angle, by speed
+    angles   at which it bends
+    """
+
+    addresses: tuple[int, int]
+    varies: tuple[float, float] = (1.0, 1.0)
+    period: float = TURN
+    angles: Array = np.empty(0)
+
+    def sheet(self) -> LoadPieces:
+        """The pieces of the function, which differ in the angles between which they hold."""
+        starts = np.unique(self.angles % self.period) if self.angles.size else np.zeros(1)
+        ways = ((FUNCTION, one, -np.inf, np.inf, *self.varies, 0.0) for one in self.addresses)
+        return _sheet(self.period if self.angles.size else 0.0, starts[None], *ways)
 
 
 class LawNumbers:
-    """The law of designs for compiled loops: numbers (see `loops.state`), packed inputs, pieces, knots.
+    """The law of designs for compiled loops: numbers (see `loops.law`), packed inputs, pieces, knots.
 
     flat     inputs of the designs
     arcs     half of the arc and limit angles of each
-    family   of their kernel; None where the law has no closed form
+    family   of their kernel; None where there is none
+    terms    of torque and forces: which, factor, and numbers, a table, a motor or a function
     """
 
     def __init__(
-        self, flat: Mapping[str, Array], branch: int, arcs: Array, family: DesignFamily | None
+        self,
+        flat: Mapping[str, Array],
+        branch: int,
+        arcs: Array,
+        family: DesignFamily | None,
+        terms: Sequence[tuple[float, float, Any]],
     ) -> None:
         size, mu = len(arcs), flat["mu"]
         self.flat, self.branch, self.arcs = flat, branch, arcs[:, 1:]
-        self.law, self.data = np.zeros((size, ENERGY + 1)), np.zeros((size, 1))
+        self.law, self.data = np.zeros((size, TERMS + TERM * len(terms))), np.zeros((size, 1))
         self.sheets, self.knots = np.empty((size, 0, 1 + 2 * SLOTS)), np.empty(0)
-        self.law[:, HALF:TORQUE], self.law[:, LEANS] = arcs, branch
+        self.law[:, HALF:RUBS], self.law[:, LEANS], self.law[:, COUNT] = arcs, branch, len(terms)
         self.law[:, MU], self.law[:, RUBS], self.law[:, TINY] = mu, mu != 0.0, 1e-9 * flat["AB"]
+        for n, (arm, factor, form) in enumerate(terms):
+            self._add(TERMS + TERM * n, arm, factor, form)
         if family is None:
             return
         inputs = {"branch": float(branch), **dict.fromkeys(("F_X", "F_Y"), np.nan), **flat}
@@ -141,34 +174,43 @@ class LawNumbers:
             self.law[:, CONTACT] = guide.code.address
             self.law[:, CONTACT_DATA] = address(self.contact) + self.contact.strides[0] * np.arange(size)
 
-    def add_function(self, k: int, start: int) -> None:
-        """Torque or force by a function at an address."""
-        self.law[:, TORQUE + k * SLOTS : TORQUE + k * SLOTS + 2] = FUNCTION, start
-
-    def add(self, k: int, load: Any) -> None:
-        """Torque, F_Y or F_X: numbers, a table or a motor."""
-        law, first = self.law, TORQUE + k * SLOTS
-        if isinstance(load, np.ndarray):
-            law[:, first + 1] = size = load
-        elif isinstance(load, Kloss):
-            most, slip, speed, gear = (self.flat.get(n, np.array([x])) for n, x in load.numbers.items())
+    def _add(self, at: int, arm: float, factor: float, form: Any) -> None:
+        """Add a term, whose numbers start at a column."""
+        law, first = self.law, at + KIND
+        law[:, at], law[:, at + 1] = arm, factor
+        if isinstance(form, np.ndarray):
+            law[:, first + 1] = size = form
+        elif isinstance(form, Kloss):
+            most, slip, speed, gear = (self.flat.get(n, np.array([x])) for n, x in form.numbers.items())
             columns = KLOSS, gear * np.copysign(most, speed), slip, speed, gear
             law[:, first : first + 5] = np.stack(np.broadcast_arrays(*columns), axis=1)
             size = most
         else:
-            sheet = self._sheet(load)
+            sheet = self._sheet(form)
             rows = np.broadcast_to(sheet.rows, (len(law), *sheet.rows.shape[1:]))
-            size = np.abs(rows[:, :, 3]).max(axis=1)
-            place = SHEETS + 3 * k
-            law[:, place : place + 3] = self.sheets.shape[1], rows.shape[1], sheet.period
-            self.sheets = np.concatenate([self.sheets, rows], axis=1)
-        if k < 2:
-            law[:, ENERGY] = np.maximum(law[:, ENERGY], np.abs(size) * (self.flat["AB"] if k else 1.0))
+            law[:, at + SHEET : at + KIND - 1] = self.sheets.shape[1], rows.shape[1], sheet.period
+            self.sheets, size = np.concatenate([self.sheets, rows], axis=1), np.zeros(1)
+            if isinstance(form, Spring):
+                size = form.stiffness * self.flat["AB"]
+            elif isinstance(form, FunctionPieces):
+                law[:, first : first + SLOTS] = rows[:, 0, 1 : 1 + SLOTS]
+                law[:, CALLS] = np.maximum(law[:, CALLS], 2.0 if form.angles.size else 1.0)
+            else:
+                size = np.abs(rows[:, :, 3]).max(axis=1)
+        if arm < 2.0:
+            law[:, ENERGY] = np.maximum(
+                law[:, ENERGY], np.abs(factor * size) * (self.flat["AB"] if arm else 1.0)
+            )
 
     def _sheet(self, load: Any) -> LoadPieces:
+        if isinstance(load, FunctionPieces):
+            return load.sheet()
         if isinstance(load, OverY):
             lengths = [self.flat[name] for name in LENGTHS]
             return sheet_over_Y(load, lengths, self.branch, self.arcs, self._slider)
+        if isinstance(load, Spring):
+            numbers = (OVER_Y, load.table.origin(0), *load.table.rows[0], 1.0)
+            return _sheet(0.0, np.zeros((1, 1)), numbers, numbers)
         if isinstance(load, OverOmega):
             self.knots = np.array(load.knots)
         return table_sheet(load)

@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..loads.load import Load
 from ..support.deadline import Deadline
 from .checks import check_inertia, design_values, drive_of, model_of, scalar
-from .drive import LOADED
 from .history import FORCES, integrated
 from .march import March, Settings
 from .model import Model
@@ -40,8 +40,8 @@ def one_motion(ask: Ask, inputs: Mapping[str, Any], starts: Mapping[str, Any], t
     check_inertia(model, start[0])
     known: dict[str, Any] = {**values, "branch": ask.branch}
     kept = zip(FORCES, drive[1:], strict=True)
-    curves = {n: c.load for n, c in kept if isinstance(c, LOADED)}
-    return in_time(ask, model, start, times, known, curves)
+    loads = {name: acting.value for name, acting in kept if isinstance(acting.value, Load)}
+    return in_time(ask, model, start, times, known, loads)
 
 
 def in_time(

@@ -27,14 +27,16 @@ from ..support.interrupts import stopped_early
 from ..support.progress import Portions, progress_bar
 from .checks import SMALL, TIME_AND_CRANK, follows_the_slider, grows
 from .coordinate import arc_around, inside
+from .drive import Acting
 from .events import NEVER
 from .history import PANELS, TELLS, told_of
-from .loops import state
-from .loops.compiled import DesignFamily, motions
+from .loops import law
+from .loops.compiled import BRIEF, DesignFamily, loops, records_of, run
+from .loops.motions import designs
 from .loops.torque import compiled
 from .model import fixed_zeros, form_of
 from .panel import TABLE
-from .pieces import LawNumbers, compiles
+from .pieces import FunctionPieces, LawNumbers, compiles
 from .request import Ask, one_motion
 from .result import DONE, NO_INERTIA, NO_START, SENSITIVITIES, WORDS, Simulation
 
@@ -120,7 +122,7 @@ def simulate_rows(
         if isinstance(load, OverY):
             status[np.isnan(zero_of(load, [flat[n] for n in LENGTHS], ask.branch))] = NO_START
     answers = Answers(status.size, t, ask, status)
-    if not ask.wrt and all(_in_loops(name, value, flat) for name, value in varying.items()):
+    if not ask.wrt and all(_in_loops(name, value) for name, value in varying.items()):
         _together(ask, varying, arrays, flat, arcs, answers, threads)
     done = np.flatnonzero(answers.done)
     if ask.names and done.size:
@@ -134,10 +136,10 @@ def simulate_rows(
     return answers.result(shape, ask.rtol)
 
 
-def _in_loops(name: str, load: Any, flat: Mapping[str, Array]) -> bool:
+def _in_loops(name: str, load: Any) -> bool:
     """True for what compiled loops follow: tables, motors, and a torque of t, theta and omega."""
     if isinstance(load, (Load, Motor)):
-        return compiles(load, flat["AB"], flat["BC"])
+        return all(isinstance(part, float) or compiles(part) for _, part in Acting(load).terms)
     return name == "torque" and not follows_the_slider(load)
 
 
@@ -184,25 +186,34 @@ def _together(
     flat, arcs = {name: column[left] for name, column in flat.items()}, arcs[left]
     scalars = {n: float(array) if array.ndim == 0 else array for n, array in arrays.items()}
     family = DesignFamily(form_of(flat), fixed_zeros({**dict.fromkeys(LOADS, nan), **scalars}))
-    laws = LawNumbers(flat, ask.branch, arcs, family)
-    laws.law[:, state.THETA0], laws.law[:, state.OMEGA_START] = flat["theta0"], flat["omega_start"]
-    code, torque = None, varying.get("torque", Motor)
+    code, timed, torque = None, False, varying.get("torque", Motor)
     if not isinstance(torque, (Load, Motor, type)):
         code = compiled(torque)
-        laws.add_function(0, code.address)
-    for k, name in enumerate(DRIVE):
-        if k or not code:
-            laws.add(k, varying.get(name, flat.get(name)))
-    if code is not None:
         timed = "t" in arguments_of("torque", torque, TIME_AND_CRANK)
-        laws.law[:, state.WAITS] = 2.0 if timed else 1.0
-    elif varying:
-        laws.law[:, state.WAITS] = 1.0
+    terms: list[tuple[float, float, Any]] = []
+    for arm, name in enumerate(DRIVE):
+        load = varying.get(name)
+        if arm == 0 and code is not None:
+            terms.append((arm, 1.0, FunctionPieces((code.address,) * 2)))
+        elif load is None and flat[name].any():
+            terms.append((arm, 1.0, flat[name]))
+        elif load is not None:
+            parts = Acting(load).terms
+            terms += [(arm, f, np.full(left.size, p) if isinstance(p, float) else p) for f, p in parts]
+    laws = LawNumbers(flat, ask.branch, arcs, family, terms)
+    laws.law[:, law.THETA0], laws.law[:, law.OMEGA_START] = flat["theta0"], flat["omega_start"]
+    laws.law[:, law.WAITS] = 2.0 if timed else 1.0 if varying else 0.0
     how = np.array([ask.rtol, ask.t_end, ask.max_steps], float)
     histories, numbers = np.empty((left.size, len(MOTION), answers.t.size)), np.full((answers.size, 4), nan)
     status, result = answers.status[left], np.full((left.size, 4), nan)
-    known = laws.law, laws.data, kinks_of(flat, ask.branch, ask.until), laws.sheets
-    _run(known, laws.knots, answers.t, how, (histories, status, result), threads, ask.deadline)
+    known = {
+        "law": laws.law,
+        "data": laws.data,
+        "sheets": laws.sheets,
+        "kinks": kinks_of(flat, ask.branch, ask.until),
+    }
+    outs = {"history": histories, "status": status, "numbers": result}
+    _run({**known, **outs}, {"knots": laws.knots, "times": answers.t, "how": how}, threads, ask.deadline)
     for k, name in enumerate(MOTION):
         answers.histories[name][left] = histories[:, k]
     answers.status[left], numbers[left] = status, result
@@ -293,25 +304,20 @@ def _arc(values: Mapping[str, float]) -> tuple[float, float, float] | None:
 
 
 def _run(
-    known: Sequence[Array],
-    knots: Array,
-    t: Array,
-    how: Array,
-    outs: Sequence[Any],
-    threads: int | None,
-    deadline: Deadline,
+    each: Mapping[str, Any], shared: Mapping[str, Array], threads: int | None, deadline: Deadline
 ) -> None:
     """Follow blocks of designs; designs are independent, so blocks do not change results."""
-    limits, kernel = how.copy(), motions()
+    size, how = len(each["law"]), shared["how"]
+    loops(designs)
 
-    def stop() -> None:  # the loops look at the most steps before each one
-        limits[MOST_STEPS] = 0.0
+    def stop() -> None:  # the loops look at the most steps before each call for panels
+        how[MOST_STEPS] = 0.0
 
     def block(a: int, b: int) -> None:
-        law, data, kinks, sheets = (np.ascontiguousarray(part[a:b]) for part in known)
-        kernel(law, data, kinks, knots, sheets, t, limits, TABLE, *(out[a:b] for out in outs))
+        memory = records_of(BRIEF, each["law"].shape[1])
+        own = {name: np.ascontiguousarray(part[a:b]) for name, part in each.items()}
+        run(designs, table=TABLE, **memory, **shared, **own)
 
-    size = len(known[0])
     with progress_bar(unit="designs") if size > LARGE else nullcontext() as watch:
         message = Portions(size, "motions", watch)
 

@@ -5,6 +5,7 @@ Where the acceleration jumps there, omega_p jumps by (alpha before - alpha after
 touches the angle or the standstill there is no such derivative: NaN.
 """
 
+from itertools import pairwise
 from math import nan, sqrt
 from typing import Any
 
@@ -12,82 +13,87 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..loads.angles import shift
+from ..loads.load import OverY
 from ..mechanism.names import LENGTHS, sensitivity
-from .drive import Curve, PositionCurve, SumCurve
+from .drive import Called
 from .events import Q, V
-from .law import Law, state_of
+from .law import alpha_of, state_of
+from .loops.law import DIRECTION, TERM, TERMS
 from .march import March
 from .result import Event
 from .tangents import Tangents
 
 Array = NDArray[np.float64]
 SAME = 1e-9  # of the accelerations: a jump by less is rounding
-AT_KINK = 1e-7  # rad: an angle so near to a kink is at the kink
 TOUCHED = 1e-6  # of the largest speed, or of its change in the motion's time: less is none
 
 
 class Shifts:
-    """The shifts of cuts by parameters; `notes` say where derivatives end."""
+    """The shifts of cuts by parameters, between panels; `notes` say where derivatives end."""
 
-    def __init__(self, run: March, tangents: Tangents) -> None:
-        self.model, self.duration, self.tangents, self.wrt = run.model, run.t, tangents, tangents.wrt
+    def __init__(self, run: March, tangents: Tangents, number: NDArray[np.intp]) -> None:
+        self.run, self.model, self.duration = run, run.model, run.t
+        self.tangents, self.wrt = tangents, tangents.wrt
         self.notes: list[str] = []
         self.of_centres: dict[str, Array] = {}
         ends = np.vstack([run.record.y, run.record.last]).T
-        theta, omega = state_of(self.model, *ends[: V + 1])
-        self.fastest = float(np.nanmax(np.abs(omega)))
-        starts = run.record.heads[:, 0].tolist()
-        self.states = dict(zip(starts, zip(theta.tolist(), omega.tolist(), strict=True), strict=False))
+        self.theta, self.omega = state_of(self.model, *ends[: V + 1])
+        self.accelerations = self._between_laws(number)
+        self.fastest = float(np.nanmax(np.abs(self.omega)))
 
     # ---- jumps ------------------------------------------------------------------------------
 
-    def jump(self, before: Any, after: Any, y: Array) -> Array:
-        """By how much q_p and v_p (y: before) jump from one piece to the next."""
-        none = np.zeros(y.shape)
-        if before.law.rests:
+    def jump(self, before: int, after: int, y: Array) -> Array:
+        """By how much q_p and v_p (y: before) jump from one panel to the next."""
+        none, record = np.zeros(y.shape), self.run.record
+        if record.rests[before]:
             return none  # it breaks away without a jump of alpha, or at an instant of its own
-        if after.law.rests:
+        if record.rests[after]:
             return y * [[0.0], [-1.0]]
-        theta, omega = self.states[after.start]
-        instant = after.start, theta, omega
-        if before.law.direction == after.law.direction and not _jumps(before.law, after.law, instant):
+        old, new = record.laws[[before, after]]
+        theta, omega = self.theta[after], self.omega[after]
+        steps = [*self.accelerations[after]]
+        left, right, changes = steps[0], steps.pop(), list(pairwise(steps))
+        shares = {n: a - b for n, (a, b) in enumerate(changes) if abs(a - b) > SAME * (abs(left) + abs(b))}
+        if old[DIRECTION] == new[DIRECTION] and not shares:
             return none  # a load bends, or the guide changes sides, where it does not press
-        left, right = (float(piece.law.alpha(*instant)) for piece in (before, after))
         least = SAME * (abs(left) + abs(right))
         if abs(left - right) <= least:
             return none
         root = sqrt(float(self.model.inertia(theta)))
         if omega == 0.0:
-            return np.stack([none[0], (left - right) * root * self._turn(after.start, left, y[1] / root)])
-        shares, last = self._shares(before, after, instant, left)
+            start = record.heads[after, 0]
+            return np.stack([none[0], (left - right) * root * self._turn(start, left, y[1] / root)])
         if not shares:
             return none  # the guide only changes sides, where it does not press: alpha differs by rounding
-        shifts = {curve: self.kink(curve, theta) for curve in shares}
+        shifts = {n: self.kink(self.model.terms[n][2], theta) for n in shares}
         first = next(iter(shifts))
         if all((one == shifts[first]).all() for one in shifts.values()):
             shares = {first: left - right}  # with what friction makes of it on the other side of the guide
-        elif abs(last - right) > least:
+        elif abs(steps[-1] - right) > least:
             self.notes.append(
-                f"NaN from t = {after.start:.6g} s on, where the friction jumps with several loads"
+                f"NaN from t = {record.heads[after, 0]:.6g} s on, where the friction jumps with several loads"
             )
             return none + nan
-        theta_p = self.tangents.angle(after.y[Q], y)
-        times = [share * self.passage(after.start, omega, shifts[c], theta_p) for c, share in shares.items()]
+        theta_p, start = self.tangents.angle(record.y[after, Q], y), record.heads[after, 0]
+        times = [share * self.passage(start, omega, shifts[n], theta_p) for n, share in shares.items()]
         return np.stack([none[0], root * np.sum(times, axis=0)])
 
-    def _shares(
-        self, before: Any, after: Any, instant: tuple[float, float, float], left: float
-    ) -> tuple[dict[Curve, float], float]:
-        """By how much each load that changes lowers alpha, and alpha with all of them."""
-        shares: dict[Curve, float] = {}
-        last, drive = left, before.law.drive
-        for name, curve in after.law.drive._asdict().items():
-            drive = drive._replace(**{name: curve})
-            alpha = float(before.law.with_drive(drive).alpha(*instant))
-            if abs(alpha - last) > SAME * (abs(left) + abs(alpha)):
-                shares[curve] = last - alpha
-            last = alpha
-        return shares, last
+    def _between_laws(self, number: NDArray[np.intp]) -> dict[int, list[float]]:
+        """The accelerations where one law follows another: terms change one after the other, then all."""
+        record, law = self.run.record, self.run.record.stretches[number]
+        new = law[1:] != law[:-1]
+        panels = number[1:][new]
+        before, after = record.laws[number[:-1][new]], record.laws[panels]
+        terms = len(self.model.terms)
+        laws = np.repeat(before[:, None], terms + 2, axis=1)
+        laws[:, -1] = after
+        for n in range(terms):
+            part = slice(TERMS + TERM * n, TERMS + TERM * (n + 1))
+            laws[:, n + 1 : -1, part] = after[:, None, part]
+        t, q, v = np.repeat(record.heads[panels][:, [0, 3, 4]], terms + 2, axis=0).T
+        alpha = alpha_of(self.run.law.at(t, q, v, laws.reshape(-1, laws.shape[-1]), np.arange(t.size)))
+        return dict(zip(panels.tolist(), alpha.reshape(-1, terms + 2).tolist(), strict=True))
 
     def passage(self, t: float, omega: float, moved: Array, theta_p: Array) -> Array:
         """dt/dp where the crank passes an angle that moves by `moved`; NaN where it only touches it."""
@@ -96,10 +102,11 @@ class Shifts:
             return np.full(len(self.wrt), nan)
         return np.asarray((moved - theta_p) / omega)
 
-    def standstill(self, event: Event, piece: Any, y: Array) -> Array:
-        """dt/dp of a standstill on a piece."""
+    def standstill(self, event: Event, panel: int, y: Array) -> Array:
+        """dt/dp of a standstill on a panel."""
         root = sqrt(float(self.model.inertia(event.theta)))
-        return self._turn(event.t, float(piece.law.alpha(event.t, event.theta, 0.0)), y[1] / root)
+        alpha = self.run.law.alpha(event.t, event.theta, 0.0, self.run.record.laws[panel])
+        return self._turn(event.t, alpha, y[1] / root)
 
     def _turn(self, t: float, alpha: float, omega_p: Array) -> Array:
         """dt/dp of a standstill; NaN where the crank only touches it."""
@@ -114,25 +121,11 @@ class Shifts:
 
     # ---- angles that move ----------------------------------------------------------------------
 
-    def kink(self, curve: Curve, theta: float) -> Array:
+    def kink(self, part: Any, theta: float) -> Array:
         """The shift of a kink of a load by each parameter: one over the slider moves with the lengths."""
-        if isinstance(curve, SumCurve):
-            shifts = [self.kink(part, theta) for part in curve.members if self._bends(part, theta)]
-            if not shifts or all((one == shifts[0]).all() for one in shifts):
-                return shifts[0] if shifts else self.tangents.by_lengths({})
-            self.notes.append(f"NaN where loads of a sum jump at one angle, theta = {theta:.6g}")
-            return np.full(len(self.wrt), nan)
-        if isinstance(curve, PositionCurve):
-            return self._by_lengths(curve.load.needs, theta)
-        return self.tangents.by_lengths(curve.moves(theta))
-
-    def _bends(self, curve: Curve, theta: float) -> bool:
-        """True if a curve has a kink at an angle."""
-        gaps = [
-            (abs(theta - angle) % period, period)
-            for angle, period in curve.kinks(self.model.lengths, self.model.branch)
-        ]
-        return any(min(gap, period - gap) < AT_KINK for gap, period in gaps)
+        if isinstance(part, OverY):
+            return self._by_lengths(part.needs, theta)
+        return self.tangents.by_lengths(part.moves(theta) if isinstance(part, Called) else {})
 
     def dead_centre(self, event: Event) -> Array:
         """The shift of a dead centre by each parameter: the same in every turn."""
@@ -145,10 +138,3 @@ class Shifts:
         names = [sensitivity(kept[0], "theta"), *(sensitivity(n, p) for n in kept for p in LENGTHS)]
         known = self.tangents.values(names, theta)
         return self.tangents.by_lengths({p: float(shift(kept, p, known)) for p in LENGTHS})
-
-
-def _jumps(before: Law, after: Law, instant: tuple[float, float, float]) -> bool:
-    """True where a load that changes has another value."""
-    changes = [pair for pair in zip(before.drive, after.drive, strict=True) if pair[0] is not pair[1]]
-    values = [(float(old.at(*instant)), float(new.at(*instant))) for old, new in changes]
-    return any(abs(old - new) > SAME * (abs(old) + abs(new)) for old, new in values)

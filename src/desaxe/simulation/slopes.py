@@ -12,12 +12,16 @@ from math import copysign, nan, pi
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from .events import Q, V
 from .history import Motion
+from .law import alpha_of
+from .loops.compiled import NODES
+from .loops.law import DIRECTION, PRESSED, RATE_W, SIDE
 from .march import March
-from .panel import INTEGRAL, NODES, PLACES, RUNNING, SERIES, Panel, basis
+from .panel import INTEGRAL, PLACES, RUNNING, SERIES, basis
 from .result import FAILED, JAMS, LIMIT, SENSITIVITIES, Event, Simulation
 from .shifts import Shifts
 from .tangents import STARTS, Tangents
@@ -62,19 +66,19 @@ class MotionSlopes:
 
     def __init__(self, run: March, wrt: Sequence[str], inputs: Mapping[str, Any]) -> None:
         self.run, self.wrt, self.tangents = run, tuple(wrt), Tangents(run.model, wrt, inputs)
-        self.shifts = Shifts(run, self.tangents)
         self.motion = Motion(run)
         self.ends_at_limit = run.status == LIMIT and bool(run.model.coordinate.half)
-        self.pieces = self._stretches()
+        self.record = run.record
+        self.number, self.start, self.stop = self._stretches()
+        self.shifts = Shifts(run, self.tangents, self.number)
         self.course = self._resolved()
 
     # ---- panels -----------------------------------------------------------------------------
 
     def _resolved(self) -> Trajectories:
         """The course on the panels of the motion, halved where the derivatives bend more than it does."""
-        piece = np.arange(len(self.pieces))
-        start, stop = (np.array([getattr(one, name) for one in self.pieces]) for name in ("start", "stop"))
-        h, new = stop - start, ~np.array([one.law.rests for one in self.pieces])
+        piece, start = np.arange(self.number.size), self.start
+        h, new = self.stop - start, ~self.record.rests[self.number]
         local = np.zeros((piece.size, 2, NODES + 1, 2 + len(self.wrt)))
         if self.ends_at_limit:
             h[-1] *= LONG if self.run.model.mu else SHORT
@@ -91,21 +95,24 @@ class MotionSlopes:
             several, new = 1 + bad, np.repeat(bad, 1 + bad)
             second = new & (np.cumsum(new) % 2 == 0)
             h = np.repeat(np.where(bad, 0.5 * h, h), several)
-            piece, start, local = (np.repeat(part, several, axis=0) for part in (piece, start, local))
-            start = start + h * second
+            piece, local = np.repeat(piece, several), np.repeat(local, several, axis=0)
+            start = np.repeat(start, several) + h * second
             self.shifts.notes.clear()
         return course
 
-    def _stretches(self) -> list[Panel]:
+    def _stretches(self) -> tuple[NDArray[np.intp], Array, Array]:
         """The panels of the motion; with friction those next to a limit angle at its end as one."""
-        panels = self.run.panels
-        pieces = [panel for panel in panels if panel.stop > panel.start] or panels[:1]
-        last = pieces.pop()
+        record = self.record
+        number = np.flatnonzero(record.heads[:, 6] > record.heads[:, 0])
+        number = number if number.size else np.zeros(1, np.intp)
+        stop = record.heads[number, 6]
         if self.ends_at_limit and self.run.model.mu:
-            end = copysign(0.5 * pi, self.run.y[Q])
-            while pieces and pieces[-1].law is last.law and abs(end - last.y[Q]) < WELL_BEFORE:
-                last = pieces.pop()._replace(stop=last.stop)
-        return [*pieces, last]
+            end, law = copysign(0.5 * pi, self.run.y[Q]), record.stretches[number]
+            one = (law == law[-1]) & (np.abs(end - record.y[number, Q]) < WELL_BEFORE)
+            first = min(int(np.argmin(one[::-1])) if not one.all() else one.size, one.size - 1)
+            keep = number.size - max(first, 1)
+            number, stop = number[: keep + 1], np.append(stop[:keep], stop[-1])
+        return number, record.heads[number, 0], stop
 
     def _nodes(self, start: Array, h: Array) -> tuple[Array, Array, Array]:
         """Instants, q and v at the nodes of panels."""
@@ -115,9 +122,11 @@ class MotionSlopes:
 
     def _local(self, piece: NDArray[np.intp], start: Array, h: Array) -> Array:
         """The series on panels for the starts (1, 0) and (0, 1) and for each parameter."""
-        laws = [self.pieces[k].law for k in piece.tolist()]
-        signs = np.array([[law.direction * law.side, law.pressed] for law in laws]).reshape(-1, 2)
-        rates = self.tangents.rates(*self._nodes(start, h), signs.T[:, :, None])
+        laws, nodes = self.record.laws[self.number[piece]], self._nodes(start, h)
+        signs = np.stack([laws[:, DIRECTION] * laws[:, SIDE], laws[:, PRESSED]])
+        t, q, v = (part.reshape(-1) for part in nodes)
+        alpha = alpha_of(self.run.law.at(t, q, v, laws, np.arange(piece.size).repeat(NODES)))
+        rates = self.tangents.rates(*nodes, signs[:, :, None], alpha.reshape(nodes[0].shape))
         jacobian, forcing = rates[:, :2].transpose(2, 0, 1, 3), rates[:, 2:].transpose(2, 0, 3, 1)
         width = h[:, None, None, None]
         matrix = -width[..., None] * RUNNING[:, None, :] * jacobian[:, :, None]
@@ -135,22 +144,21 @@ class MotionSlopes:
 
     def _joined(self, piece: NDArray[np.intp], start: Array, h: Array, local: Array) -> Trajectories:
         """The course through all pieces."""
-        y, before = self._start(), self.pieces[0]
+        y, before, law = self._start(), 0, self.record.stretches
         ends, begin = local.sum(axis=2), np.empty((start.size, 2, len(self.wrt)))  # polynomials are 1 there
-        rows = zip(piece.tolist(), ends[..., :2], ends[..., 2:], strict=True)
+        rows = zip(self.number[piece].tolist(), ends[..., :2], ends[..., 2:], strict=True)
         for row, (k, gain, forced) in enumerate(rows):
-            own = self.pieces[k]
-            if own.law is not before.law:
-                y = y + self.shifts.jump(before, own, y)
-            if own.law.rests and own.stop > own.start:  # it has not only stopped where it started
-                y = y * [[1.0], [0.0]]
-            before, begin[row] = own, y
+            if law[k] != law[before] and row:
+                y = y + self.shifts.jump(before, k, y)
+            if self.record.rests[k] and self.record.heads[k, 6] > self.record.heads[k, 0]:
+                y = y * [[1.0], [0.0]]  # it has not only stopped where it started
+            before, begin[row] = k, y
             y = y + gain @ y + forced
         return Trajectories(start, h, begin, local[..., 2:] + local[..., :2] @ begin[:, None])
 
     def _start(self) -> Array:
         """q_p and v_p at the start."""
-        q, v, _ = np.array(self.pieces[0].y)
+        q, v, _ = self.record.y[self.number[0]]
         by_theta, by_omega = self.tangents.speeds(q, v)
         theta, omega = (self.tangents.flags(name) for name in STARTS)
         of_q = (theta - by_theta[2:]) / by_theta[0]
@@ -181,8 +189,7 @@ class MotionSlopes:
             shift = self.tangents.limit(event.theta) if last else np.zeros(len(self.wrt))
             return self.shifts.passage(event.t, event.omega, shift, theta)
         if event.kind == "standstill":
-            piece = next(one for one in self.pieces if one.stop >= event.t)
-            return self.shifts.standstill(event, piece, y)
+            return self.shifts.standstill(event, int(self.number[np.searchsorted(self.stop, event.t)]), y)
         if event.kind == "break-away":
             return self._break_away(event, theta)
         self.shifts.notes.append(f"NaN of {event.kind} at t = {event.t:.6g} s")
@@ -190,31 +197,28 @@ class MotionSlopes:
 
     def _rate_at_limit(self) -> float:
         """dq/dt at a limit angle."""
-        record = self.run.record
-        start, h = record.heads[-1, :2]
-        s = np.array([2.0 * (self.run.t - start) / h - 1.0])
-        return float(record.rates[-1, Q] @ SERIES.T @ basis(s, NODES - 1)[:, 0])
+        start, h = self.record.heads[-1, :2]
+        s = 2.0 * (self.run.t - start) / h - 1.0
+        return float(2.0 / h * legendre.legval(s, legendre.legder(self.record.series[-1, Q])))
 
     def _break_away(self, event: Event, theta: Array) -> Array:
         """dt/dp of the instant from which the torque moves the crank: T = T_in at barely a speed."""
-        torque, after = (
-            self.run.model.drive.torque,
-            next((p for p in self.pieces if p.start >= event.t), None),
-        )
+        torque, row = self.run.model.drive.torque, int(np.searchsorted(self.start, event.t))
         by_time = torque.by_time(event.t, event.theta, 0.0)
-        if after is None or by_time != by_time:
+        if row == self.start.size or by_time != by_time:
             self.shifts.notes.append(
                 f"NaN of break-away at t = {event.t:.6g} s, but for a derivative= that returns dT/dt, too"
             )
             return np.full(len(self.wrt), nan)
-        if self.shifts.accelerates(float(after.law.alpha(event.t, event.theta, 0.0))):
+        law = self.record.laws[self.number[row]]
+        if self.shifts.accelerates(self.run.law.alpha(event.t, event.theta, 0.0, law)):
             return np.zeros(len(self.wrt))  # the torque jumps at an instant of its own
-        middle = np.array([0.5 * (after.start + after.stop)])
+        middle = np.array([0.5 * (self.start[row] + self.stop[row])])
         direction = copysign(BARELY, self.motion.at(middle)[1][V, 0])
         names = [f"T_in_wrt_{p}" for p in ("theta", *self.tangents.of_design)]
         known = self.tangents.values(names, event.theta, direction, mu=self.run.model.friction)
         t, angle, omega = (np.array([number]) for number in (event.t, event.theta, 0.0))
-        by_theta = np.ravel(torque.slopes(t, angle, omega).theta)[0] - known["T_in_wrt_theta"]
+        by_theta = np.ravel(torque.slopes(t, angle, omega)[1])[0] - known["T_in_wrt_theta"]
         pushes = [float(p == "torque") - known.get(f"T_in_wrt_{p}", 0.0) for p in self.wrt]
         return np.asarray(-(by_theta * theta + np.array(pushes)) / by_time)
 
@@ -235,12 +239,12 @@ class MotionSlopes:
         t, (q, v, _), last = np.array([self.run.t]), self.run.y[:, None], slice(-1, None)
         if self.ends_at_limit:
             t, q, v = (rows[0] for rows in self._nodes(self.course.start[last], self.course.h[last]))
-        power = self.pieces[-1].law.rates(t, q, v).work
+        power = self.run.law.at(t, q, v, self.record.laws[-1])[RATE_W] * ~self.record.rests[-1]
         end = np.array([*self.tangents.energy(q, v, self.course.at(t)), power + np.zeros(t.size)])
         if self.ends_at_limit:
             s = 2.0 * (self.run.t - self.course.start[last]) / self.course.h[last] - 1.0
             end = end @ SERIES.T @ basis(s, NODES - 1)
-        begin = self.pieces[0].y
+        begin = self.record.y[self.number[0]]
         return np.asarray(
             end[:-1, 0] + end[-1, 0] * of_end - self.tangents.energy(begin[Q], begin[V], self.course.y[0])
         )

@@ -18,8 +18,6 @@ from ..evaluation.evaluate import evaluate
 from ..loads.along_motion import OfMotion
 from ..mechanism.catalogue import has
 from ..mechanism.names import sensitivity
-from .drive import Slopes
-from .law import Law
 from .model import Model
 
 Array = NDArray[np.float64]
@@ -126,10 +124,11 @@ class Tangents:
         rows[1] += 1.0 / root
         return by_theta, rows
 
-    def rates(self, t: Array, q: Array, v: Array, signs: Array) -> Array:
+    def rates(self, t: Array, q: Array, v: Array, signs: Array, alpha: Array) -> Array:
         """The derivatives of the rates of q and v: two rows of them.
 
         signs   of the slider's velocity over that of the crank, and of the normal force, held under friction
+        alpha   the acceleration, for several sliders
         """
         theta, by_theta, bent = self.angles(q)
         names = [*self._names("M_eff"), *self._names("T_in")]
@@ -140,10 +139,10 @@ class Tangents:
         by_omega = -omega * log
         by_omega[1] += 1.0 / root
         flat = self.model.drive.torque.slopes(*(part.reshape(-1) for part in (t, theta, omega)))
-        torque = Slopes(*(np.broadcast_to(part, t.size).reshape(t.shape) for part in flat))
-        of_torque = torque.theta * by_theta + torque.omega * by_omega
+        torque, *slopes = (np.broadcast_to(part, t.size).reshape(t.shape) for part in flat)
+        of_torque = slopes[0] * by_theta + slopes[1] * by_omega
         of_torque[2:] += self.flags("torque").reshape(-1, *[1] * t.ndim)
-        push = torque.value - known["T_in"]
+        push = torque - known["T_in"]
         of_push = of_torque - self._rows("T_in", known, by_theta)
         if self.still:
             for sign, still in ((1.0, False), (-1.0, True)):  # inertia cancels
@@ -153,9 +152,9 @@ class Tangents:
         if self.model.friction != 0.0 or "mu" in self.wrt:
             state = _State(theta, omega, by_theta, by_omega)
             if self.several:
-                taken, of_taken = self._of_guides(state, t, of_torque)
+                taken, of_taken = self._of_guides(state, alpha, of_torque)
             else:
-                taken, of_taken = self._friction(state, inertia, torque.value, of_torque, signs)
+                taken, of_taken = self._friction(state, inertia, torque, of_torque, signs)
             push, of_push = push - taken, of_push - of_taken
         return np.stack([(by_omega - omega * bent / slope) / slope, (of_push - push * log) / root])
 
@@ -185,10 +184,9 @@ class Tangents:
         of_alpha = (of_alpha - of_arm * known["N_C"] - arm * of_normal) / (inertia + arm * by_alpha)
         return arm * known["N_C"], of_arm * known["N_C"] + arm * (of_normal + by_alpha * of_alpha)
 
-    def _of_guides(self, state: "_State", t: Array, of_torque: Array) -> tuple[Array, Array]:
-        """The friction torque of several sliders, T_in with it less T_in without; its slopes."""
+    def _of_guides(self, state: "_State", alpha: Any, of_torque: Array) -> tuple[Array, Array]:
+        """The torque that the guides of several sliders take: that with friction less that without."""
         theta, omega, *by_state = state
-        alpha = Law(self.model, self.model.drive).alpha(t, theta, omega)
         names = self._names("T_in", "omega", "alpha")
         of_mu = {k: f"T_in_wrt_{p}" for k, p in enumerate(self.wrt, 2) if _is_mu(p)}
         there = self.values([*names, *of_mu.values()], theta, omega, alpha, mu=None)

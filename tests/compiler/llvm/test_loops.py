@@ -12,7 +12,7 @@ from numpy import empty, int64, nextafter, zeros
 from desaxe.compiler.helpers import mul_add
 from desaxe.compiler.llvm import machine
 from desaxe.compiler.llvm.loops import CompiledLoops, apart
-from desaxe.simulation.loops import newton
+from desaxe.simulation.loops import law, newton
 
 WEIGHT, FIRST = 0.3, int64(2)
 
@@ -105,7 +105,7 @@ def test_arrays_are_contiguous():
     ("function", "kinds", "operations"),
     [
         (newton.subtract, ("f64[1]", "f64", "f64[1]", "i64"), {"fmul", "fsub"}),
-        (newton.fill_rates, ("f64[1]", "f64[2]"), {"fdiv", "sqrt"}),
+        (law.fill_rates, ("f64[1]", "f64[2]"), {"fdiv", "sqrt"}),
     ],
     ids=lambda value: getattr(value, "__name__", ""),
 )

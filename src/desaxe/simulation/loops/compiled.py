@@ -1,7 +1,8 @@
 """The loops over panels and designs as machine code, and the kernel of a family of designs that they call."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache, lru_cache
+from inspect import signature
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,24 +13,26 @@ from ...mechanism.program import Variant
 from ...runtime.executor import CompiledKernel, compiled_kernel, kernel_for
 from ...runtime.kernels import KernelKey
 from ...support.signals import finished
-from .march import advance
-from .motions import designs
 
 Array = NDArray[np.float64]
+NODES = 16
 NAMES = (  # see `state`
     *("M_eff", "M_eff_wrt_theta", "T_in", "T_in_wrt_theta", "Y_wrt_theta", "Y_wrt_theta_theta"),
     *("potential_energy", "Y"),
 )
 GUIDE = ("N_C", "N_C_wrt_alpha", "N_C_wrt_omega0", "phi")
 UNLOADED = ("omega", "alpha", "mu", "F_X", "F_Y")
-_PANELS = (
-    *("f64[1]", "f64[1]", "f64[1]", "f64[2]", "f64[1]", "f64[2]", "f64[1]", "f64[1]", "f64[2]"),
-    *("f64[2]", "f64[2]", "f64[2]", "f64[3]", "f64[3]", "f64[2]", "f64[1]"),
-)
-_MOTIONS = (
-    *("f64[2]", "f64[2]", "f64[3]", "f64[1]", "f64[3]", "f64[1]", "f64[1]", "f64[2]", "f64[3]"),
-    *("i8[1]", "f64[2]"),
-)
+BRIEF = 64  # panels of a call for one motion, which neither an interrupt nor a deadline stops
+HEAD = 7  # numbers of a panel (see `loops.panels`)
+KINDS = {  # of the arguments of `motions.single` and `motions.designs`
+    **{"work": "f64", "law": "f64[2]", "data": "f64[2]", "kinks": "f64[3]", "knots": "f64[1]"},
+    **{"sheets": "f64[3]", "table": "f64[2]", "y": "f64[1]", "clock": "f64[1]", "scales": "f64[1]"},
+    **{"rows": "f64[2]", "matrix": "f64[2]", "heads": "f64[2]", "records": "f64[3]", "ends": "f64[2]"},
+    **{"laws": "f64[2]", "count": "f64[1]", "which": "f64[1]", "t": "f64[1]", "q": "f64[1]", "v": "f64[1]"},
+    **{"out": "f64[2]", "times": "f64[1]", "how": "f64[1]", "history": "f64[3]", "status": "i8[1]"},
+    "numbers": "f64[2]",
+}
+_NONE = {f"f64[{axes}]": np.empty((0,) * axes) for axes in (1, 2, 3)} | {"i8[1]": np.empty(0, np.int8)}
 
 
 class DesignFamily(NamedTuple):
@@ -65,13 +68,20 @@ def packed(kernel: CompiledKernel, inputs: Mapping[str, Any], size: int) -> Arra
     return rows
 
 
-@cache
-def panels() -> CompiledLoops:
-    """The machine code of panels of one motion, compiled once a process."""
-    return finished(lambda: CompiledLoops(advance, _PANELS))
+def records_of(most: int, numbers: int) -> dict[str, Array]:
+    """Memory for `most` panels, and the one before, under a law of some numbers."""
+    shapes = {"heads": (HEAD,), "records": (3, NODES + 1), "ends": (2,), "laws": (numbers,)}
+    return {name: np.zeros((most + 1, *shape)) for name, shape in shapes.items()}
 
 
 @cache
-def motions() -> CompiledLoops:
-    """The machine code of many motions, compiled once a process."""
-    return finished(lambda: CompiledLoops(designs, _MOTIONS))
+def loops(function: Callable[..., Any]) -> tuple[CompiledLoops, dict[str, str]]:
+    """The machine code of a function, compiled once a process, and the kinds of its arguments."""
+    kinds = {name: KINDS[name] for name in signature(function).parameters}
+    return finished(lambda: CompiledLoops(function, tuple(kinds.values()))), kinds
+
+
+def run(function: Callable[..., Any], **arguments: Any) -> int:
+    """Run `motions.single` or `motions.designs` with arrays by name; what is not given is empty."""
+    code, kinds = loops(function)
+    return code(*(arguments[name] if name in arguments else _NONE[kind] for name, kind in kinds.items()))

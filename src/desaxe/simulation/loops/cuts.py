@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 from numpy import empty
 
-from .newton import NORMAL, POINTS, SPEED, UNSURE, WEDGE, product
+from .law import FIRST, HALF, LAST, NORMAL, RUBS, SPEED, UNSURE, WEDGE, coordinate, place
+from .newton import POINTS, product
 from .panels import BEYOND, LEFT, NEAR, next_kink, root, value
-from .state import FIRST, HALF, LAST, RUBS, coordinate, place
 
 if TYPE_CHECKING:
     from typing import Any

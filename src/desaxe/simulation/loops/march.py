@@ -2,20 +2,18 @@
 
 sheets   pieces of loads: rows of angles (or speeds) from which they hold, and their numbers for both ways
 knots    speeds at which pieces meet
-records  series of panels; at their nodes the rates of q, v and W, the speed, and under friction the normal
-         force, its wedging and its rounding
-ends     kind of the cut at the end of a panel (RESTING: nothing moves), row of its angle; direction, sign of
-         Y' and side of the guide that hold on the panel
+records  series of panels
+ends     kind of the cut at the end of a panel (RESTING: nothing moves), row of its angle
+laws     the law that holds on a panel
 """
 
 from __future__ import annotations
 
-from math import copysign, floor, inf, sqrt
+from math import copysign, floor, inf, nan
 from typing import TYPE_CHECKING
 
 from numpy import empty, int64
 
-from ...compiler.llvm.loops import call
 from .cuts import (
     JAMMED,
     KIND,
@@ -30,49 +28,56 @@ from .cuts import (
     STANDSTILL,
     VALUE,
     earliest,
-)
-from .newton import (
+)  # fmt: skip
+from .law import (
     ANGLE,
+    CALLS,
+    COUNT,
+    DIRECTION,
+    DRAG,
+    END,
+    FIRST,
+    FUNCTION,
+    HALF,
+    LAST,
+    MU,
     NORMAL,
+    OVER_THETA,
+    PERIOD,
+    PIECES,
+    PRESSED,
     RATE_Q,
     RATE_V,
     ROWS,
-    SLOPE,
-    SPEED,
-    UNSURE,
-    WEDGE,
-    newton,
-)
-from .panels import CHOSEN, FLIPPED, GOES_ON, LEFT, STOPPED, T_END, WISH, T, guess, keep, motion, one, value
-from .state import (
-    CHOOSE,
-    DIRECTION,
-    DRAG,
-    FIRST,
-    HALF,
-    INERTIA,
-    INERTIA_SLOPE,
-    LAST,
-    MU,
-    NEXT,
-    OVER_THETA,
-    PRESSED,
     RUBS,
-    SHEETS,
+    SHEET,
     SIDE,
+    SLOPE,
     SLOTS,
+    SPEED,
+    TERM,
+    TERMS,
     TINY,
-    TORQUE,
     TRAVEL,
+    UNSURE,
     WAITS,
+    WEDGE,
+    acceleration,
+    motion,
     place,
+    start,
+)  # fmt: skip
+from .law import (
+    KIND as PIECE,
 )
+from .newton import newton
+from .panels import CHOSEN, FLIPPED, GOES_ON, LEFT, STOPPED, T_END, WISH, T, guess, keep, one, value
 
 if TYPE_CHECKING:
     from typing import Any
 
 RESTING = -1.0  # in place of a cut: nothing has moved
-RESTS, NO_BALANCE, TWO_BALANCES, CUT = range(3, 7)  # besides those of `panels`
+RESTS, NO_BALANCE, TWO_BALANCES, CUT, CHATTERS, UNMOVED = range(3, 9)  # besides those of `panels`
 JAMS_AT = 1.0 - 1e-6  # see `..law`
 AHEAD = 1e-9  # rad: which piece follows an angle
 BEHIND = 1e-8  # of the largest speed of a motor's table: which piece of it follows a speed
@@ -80,18 +85,20 @@ TURNED_ON = 1e-6  # rad: so far from a dead centre the slider has left its posit
 PROBES = 2000  # instants of a motion at which loads that depend on time are asked
 SOON = 1e-6  # of the motion: then a normal force has left 0
 EXACT = 0.02  # tolerances: a panel whose inside is so exact need not be solved again up to a cut
-GROWING = int64(6)  # of the choice: numbers that a function takes which chooses pieces
+INSIDE = 1e-12  # rad, and last bits of an angle: so far inside of its piece a function is evaluated
+CROWD, NARROW, BESIDE = 64, 0.1, 0.005  # so many panels, rad that they turn, of a speed on either side of it
 
 
-def piece_of(load: Any, angle: float, speed: float, way: float, sheets: Any, law: Any) -> None:
+def piece_of(term: Any, angle: float, speed: float, way: float, sheets: Any, law: Any) -> None:
     """The piece of a load that holds at an angle or a speed, and the angle at which it ends."""
-    first, count = int64(law[SHEETS + 3 * load]), int64(law[SHEETS + 3 * load + 1])
-    period, turns, x = law[SHEETS + 3 * load + 2], 0.0, speed
+    first, count, period = int64(term[SHEET]), int64(term[PIECES]), term[PERIOD]
+    turned, x, behind = 0.0, speed, inf
+    term[END] = copysign(inf, way)
     if count == 0:
         return
     if period > 0.0:
-        turns = floor((angle - sheets[first, 0]) / period)
-        x = angle - period * turns
+        turned = period * floor((angle - sheets[first, 0]) / period)
+        x = angle - turned
     low, high = first, first + count
     while high - low > 1:
         middle = int64(0.5 * (low + high))
@@ -99,41 +106,29 @@ def piece_of(load: Any, angle: float, speed: float, way: float, sheets: Any, law
             low = middle
         else:
             high = middle
-    if period > 0.0:
-        end = sheets[low, 0]
-        if way > 0.0:
-            end = sheets[low + 1, 0] if low + 1 < first + count else sheets[first, 0] + period
-        if law[FIRST] < end + period * turns and end + period * turns < law[LAST]:
-            law[NEXT + load] = end + period * turns
-    column = 1 if way > 0.0 else 1 + SLOTS
     for k in range(SLOTS):
-        law[TORQUE + SLOTS * load + k] = sheets[low, column + k]
-    if law[TORQUE + SLOTS * load] == OVER_THETA:
-        law[TORQUE + SLOTS * load + 1] += period * turns
+        term[PIECE + k] = sheets[low, (1 if way > 0.0 else 1 + SLOTS) + k]
+    if period == 0.0:
+        return
+    behind = turned + (sheets[low + 1, 0] if low + 1 < first + count else sheets[first, 0] + period)
+    end = behind if way > 0.0 else turned + sheets[low, 0]
+    if law[FIRST] < end and end < law[LAST]:
+        term[END] = end
+    if term[PIECE] == OVER_THETA:
+        term[PIECE + 1] += turned
+    elif term[PIECE] == FUNCTION:
+        inside = INSIDE + 4e-16 * abs(angle)
+        term[PIECE + 2], term[PIECE + 3] = turned + sheets[low, 0] + inside, behind - inside
 
 
 def pieces(
-    t: float, theta: float, omega: float, way: float, growing: float, fast: float, sheets: Any, law: Any
-) -> int:
-    """The pieces of all loads that hold from a state on; not 0 where a function has raised an exception."""
+    theta: float, omega: float, way: float, growing: float, fast: float, sheets: Any, law: Any
+) -> None:
+    """The pieces of all loads that hold from a state on."""
     law[DIRECTION] = way
-    for load in range(3):
-        law[NEXT + load] = copysign(inf, way)
-    if law[CHOOSE] != 0.0:
-        choice: Any = empty(5)
-        choice[0], choice[1], choice[2], choice[3], choice[4] = t, theta, omega, way, growing
-        return call(int64(law[CHOOSE]), choice, 0, 0)
-    for load in range(3):
-        speed = omega + copysign(BEHIND * fast, growing)
-        piece_of(load, theta + copysign(AHEAD, way), speed, way, sheets, law)
-    return 0
-
-
-def acceleration(rows: Any) -> float:
-    """The acceleration of the crank at the first node."""
-    inertia, omega = rows[INERTIA, 0], rows[SPEED, 0]
-    bent = 0.5 * rows[INERTIA_SLOPE, 0] * omega * omega
-    return float((rows[RATE_V, 0] * sqrt(inertia) - bent) / inertia)
+    for n in range(int64(law[COUNT])):
+        at, speed = TERMS + TERM * n, omega + copysign(BEHIND * fast, growing)
+        piece_of(law[at : at + TERM], theta + copysign(AHEAD, way), speed, way, sheets, law)
 
 
 def balances(rows: Any) -> tuple[float, int]:
@@ -149,18 +144,17 @@ def law_for(
     """The law for one way of turning: code of an error, sets of forces, acceleration, side of the guide."""
     code, side, solutions, growing = 0, 1.0, 1, 1.0
     for trial in range(2):
-        if code == 0:
-            code = pieces(t, rows[ANGLE, 0], rows[SPEED, 0], way, growing, fast, sheets, law)
+        pieces(rows[ANGLE, 0], rows[SPEED, 0], way, growing, fast, sheets, law)
         law[PRESSED] = 1.0
-        code = motion(t, y, law, data, rows, still) if code == 0 else code
+        code = motion(t, y, law, data, rows, still)
         if law[RUBS] > 0.0 and code == 0:
             side, solutions = balances(rows)
             law[PRESSED] = side
             code = motion(t, y, law, data, rows, still)
         if trial == 1 or not fast > 0.0 or code != 0:
             break
-        growing = copysign(1.0, acceleration(rows))
-    return code, solutions, acceleration(rows), side
+        growing = copysign(1.0, acceleration(rows, 0))
+    return code, solutions, acceleration(rows, 0), side
 
 
 def lean(y: Any, t: float, way: float, law: Any, data: Any, rows: Any, still: Any) -> int:
@@ -200,7 +194,8 @@ def choose(y: Any, clock: Any, knots: Any, sheets: Any, law: Any, data: Any, row
         fast = max(fast, abs(knots[k]))
     if y[1] != 0.0 and law[RUBS] == 0.0 and fast == 0.0:
         clock[CHOSEN] = 1.0
-        return pieces(t, place(y[0], law), 0.0, copysign(1.0, y[1]), 1.0, fast, sheets, law)
+        pieces(place(y[0], law), 0.0, copysign(1.0, y[1]), 1.0, fast, sheets, law)
+        return GOES_ON
     law[PRESSED] = 1.0
     code = motion(t, y, law, data, rows, still)
     if code != 0:
@@ -229,7 +224,7 @@ def choose(y: Any, clock: Any, knots: Any, sheets: Any, law: Any, data: Any, row
             code = motion(t, y, law, data, rows, still)
             if code != 0:
                 return code
-            if way * alpha > 0.0 or way * acceleration(rows) > 0.0:
+            if way * alpha > 0.0 or way * acceleration(rows, 0) > 0.0:
                 return TWO_BALANCES  # at rest nothing says on which side the guide presses
     if starts != 1:
         return RESTS if starts == 0 else TWO_BALANCES
@@ -365,19 +360,44 @@ def ends_motion(cut: Any, kinks: Any) -> bool:
     return bool(cut[KIND] == LIMIT or cut[KIND] == JAMMED)
 
 
+def slides(t: float, y: Any, law: Any, data: Any, scales: Any) -> bool:
+    """True if a torque that jumps at a speed drives the crank back to it from either side: it chatters.
+
+    scales   its last number becomes that v
+    """
+    rows, still, trial, rates = empty((ROWS, 16)), empty(32), empty(3), empty(2)
+    low, high = y[1] - BESIDE * abs(y[1]), y[1] + BESIDE * abs(y[1])
+    trial[0] = y[0]
+    for k in range(2):
+        trial[1] = low if k == 0 else high
+        rates[k] = rows[RATE_V, 0] if motion(t, trial, law, data, rows, still) == 0 else nan
+    gap = rates[0] - rates[1]
+    for _ in range(64):  # to the half with the larger part of the difference
+        trial[1] = 0.5 * (low + high)
+        here = rows[RATE_V, 0] if motion(t, trial, law, data, rows, still) == 0 else nan
+        if rates[0] - here > here - rates[1]:
+            high, rates[1] = trial[1], here
+        else:
+            low, rates[0] = trial[1], here
+    scales[2] = high
+    return bool(gap > 0.0 and rates[0] - rates[1] > 0.5 * gap)
+
+
 def advance(
     y: Any, clock: Any, scales: Any, kinks: Any, knots: Any, sheets: Any, law: Any, data: Any, table: Any,
-    rows: Any, matrix: Any, heads: Any, records: Any, rates: Any, ends: Any, count: Any,
+    rows: Any, matrix: Any, heads: Any, records: Any, ends: Any, laws: Any, count: Any,
 ) -> int:  # fmt: skip
     """Panels until the motion ends or stands still, or the memory of records is full: GOES_ON.
 
     count   in: 1 where the first row has the panel before; out: panels of this call
     """
     cut, new = empty(6), empty(3)
-    made, most = 0, len(heads) - 1
+    made, most, code = 0, len(heads) - 1, GOES_ON
     if count[0] == 0.0:
         heads[0, 1] = 0.0
-    code = GOES_ON
+        code = start(law, data, clock[T_END], y, scales, rows)
+        if code != 0 or not scales[1] < inf:
+            return STOPPED if code == STOPPED else UNMOVED
     while made < most and clock[T] < clock[T_END]:
         head, series = heads[made + 1], records[made + 1]
         code = step(
@@ -392,16 +412,14 @@ def advance(
         if code != GOES_ON and code != CUT:
             break
         made += 1
-        for i in range(16):
-            for k in range(3):
-                rates[made, k, i], rates[made, 4 + k, i] = rows[RATE_Q + k, i], rows[NORMAL + k, i]
-            rates[made, 3, i] = rows[SPEED, i]
-        ends[made, 0], ends[made, 1], ends[made, 2] = cut[KIND], cut[ROW], law[DIRECTION]
-        ends[made, 3], ends[made, 4] = law[SIDE], law[PRESSED]
+        ends[made, 0], ends[made, 1] = cut[KIND], cut[ROW]
+        for k in range(len(law)):
+            laws[made, k] = law[k]
         for k in range(3):
             y[k] = new[k]
         if code == CUT and (ends_motion(cut, kinks) or cut[KIND] == STANDSTILL):
             break
         code = GOES_ON
     count[0] = made
-    return code
+    crowd = code == GOES_ON and made >= CROWD and law[CALLS] > 0.0 and abs(y[0] - heads[1, 3]) < NARROW
+    return CHATTERS if crowd and slides(clock[T], y, law, data, scales) else code

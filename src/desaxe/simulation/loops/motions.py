@@ -1,4 +1,4 @@
-"""Motions of designs, one after the other, in plain loops, which are compiled (`compiled`).
+"""Motions of designs, one after the other, in compiled loops; the entries of all loops.
 
 how      relative tolerance, t_end, most steps
 history  rows of angles, speeds and accelerations
@@ -11,30 +11,30 @@ from typing import TYPE_CHECKING
 
 from numpy import empty, int64, zeros
 
-from .cuts import JAMMED, KIND, KINK, LIMIT, ROW
-from .march import CUT, RESTS, acceleration, choose, step, wait
-from .newton import ANGLE, RATE_V, ROWS, SPEED
-from .panels import CHOSEN, GOES_ON, LEFT, SHARP, T_END, T, motion, value
-from .state import (
+from .cuts import JAMMED, KINK, LIMIT
+from .law import (
+    ANGLE,
     FIRST,
-    FUNCTION,
     LAST,
     OMEGA_START,
-    RUBS,
+    POTENTIAL,
+    ROWS,
+    SPEED,
     THETA0,
-    TORQUE,
-    WAITS,
-    account,
-    energy_of,
+    TIME,
+    acceleration,
+    law_at,
     place,
-    start,
-    tell,
-)
+    still_at,
+    values,
+)  # fmt: skip
+from .march import CUT, RESTING, RESTS, UNMOVED, advance
+from .panels import GOES_ON, LEFT, SHARP, T_END, T, value
 
 if TYPE_CHECKING:
     from typing import Any
 
-CROWD, NARROW, BESIDE = 64, 0.1, 0.005  # so many panels, rad that they turn, of a speed on either side of it
+PANELS, LAW = 0.0, 1.0  # what the entry for one motion does
 SHARPEST = 3e-11  # of a radian: a limit angle cannot be told better
 
 
@@ -54,121 +54,119 @@ def told(status: Any, t: float, steps: Any, y: Any, law: Any, sums: Any, numbers
     return status
 
 
-def slides(t: float, y: Any, law: Any, data: Any) -> bool:
-    """True if a torque that jumps at a speed drives the crank back to it from either side: it chatters."""
-    rows, still, trial = empty((ROWS, 16)), empty(32), empty(3)
-    for k in range(3):
-        trial[k] = y[k]
-    low, high = y[1] - BESIDE * abs(y[1]), y[1] + BESIDE * abs(y[1])
-    trial[1] = low
-    below = rows[RATE_V, 0] if motion(t, trial, law, data, rows, still) == 0 else nan
-    trial[1] = high
-    above = rows[RATE_V, 0] if motion(t, trial, law, data, rows, still) == 0 else nan
-    gap = below - above
-    for _ in range(64):  # to the half with the larger part of the difference
-        trial[1] = 0.5 * (low + high)
-        here = rows[RATE_V, 0] if motion(t, trial, law, data, rows, still) == 0 else nan
-        if below - here > here - above:
-            high, above = trial[1], here
-        else:
-            low, below = trial[1], here
-    return bool(gap > 0.0 and below - above > 0.5 * gap)
+def account(y: Any, law: Any, data: Any, rows: Any, sums: Any) -> None:
+    """Take a state into account.
+
+    sums: first energy, work done either way, largest kinetic energy, residual now and before, largest energy,
+    work so far.
+    """
+    state, angles = empty(32), empty(16)
+    for i in range(16):
+        state[i] = y[0]
+    still_at(state, law, data, rows, angles)
+    energy = 0.5 * y[1] * y[1] + rows[POTENTIAL, 0]
+    if sums[5] < 0.0:
+        sums[0] = energy
+    off = abs(energy - y[2] - sums[0])
+    sums[1] += abs(y[2] - sums[6])
+    sums[2] = max(sums[2], 0.5 * y[1] * y[1])
+    sums[4] = sums[3]
+    sums[3] = max(sums[3], off) if off == off else sums[3]
+    sums[5], sums[6] = max(sums[5], abs(energy)), y[2]
 
 
-def tell_at(t: float, q: float, v: float, law: Any, data: Any, history: Any, row: Any) -> None:
-    """Angle, speed and acceleration of a state, under friction too, into rows of histories."""
-    if law[RUBS] == 0.0:
-        tell(t, q, v, law, data, history, row)
-        return
-    rows, still, y = empty((ROWS, 16)), empty(32), empty(3)
-    y[0], y[1], y[2] = q, v, 0.0
-    motion(t, y, law, data, rows, still)
-    history[0, row], history[1, row], history[2, row] = rows[ANGLE, 0], rows[SPEED, 0], acceleration(rows)
+def tell(
+    head: Any, series: Any, resting: bool, times: Any, row: Any, law: Any, data: Any, rows: Any, history: Any
+) -> Any:  # fmt: skip
+    """Angle, speed and acceleration at the instants of a panel, sixteen at a time; the next instant."""
+    state: Any = empty(32)
+    h = head[1] if head[1] > 0.0 else 1.0
+    while row < len(times) and times[row] <= head[6]:
+        last = row
+        while last + 1 < len(times) and last < row + 15 and times[last + 1] <= head[6]:
+            last += 1
+        for i in range(16):
+            rows[TIME, i] = times[row + i if row + i < last else last]
+            s = (rows[TIME, i] - head[0]) / h
+            state[i], state[16 + i] = value(series[0], head[3], s), value(series[1], head[4], s)
+        law_at(state, law, data, rows, 0)
+        for k in range(row, last + 1):
+            history[0, k], history[1, k] = rows[ANGLE, k - row], rows[SPEED, k - row]
+            history[2, k] = 0.0 if resting else acceleration(rows, k - row)
+        row = last + 1
+    return row
 
 
 def end_of(code: Any, cut: Any, kinks: Any) -> Any:
-    """The status of a motion after a panel, or without one; -1 where it goes on, -2 where it fails."""
+    """The status of a motion after some panels; -1 where it goes on, -2 where it fails."""
     if code == RESTS:
         return 1
     if code > RESTS and code < CUT:
         return 3
     if code == CUT:
-        if cut[KIND] == KINK:
-            return int64(kinks[int64(cut[ROW]), 2]) if cut[ROW] >= 0.0 else -1
-        return 2 if cut[KIND] == LIMIT else 3 if cut[KIND] == JAMMED else -1
-    return -1 if code == GOES_ON else -2
+        if cut[0] == KINK:
+            return int64(kinks[int64(cut[1]), 2]) if cut[1] >= 0.0 else -1
+        return 2 if cut[0] == LIMIT else 3 if cut[0] == JAMMED else -1
+    return 6 if code == UNMOVED else -1 if code == GOES_ON else -2
 
 
 def follow(
-    law: Any, data: Any, kinks: Any, knots: Any, sheets: Any, times: Any, how: Any, table: Any, history: Any,
-    numbers: Any,
+    law: Any, data: Any, kinks: Any, knots: Any, sheets: Any, times: Any, how: Any, table: Any, heads: Any,
+    records: Any, ends: Any, laws: Any, history: Any, numbers: Any,
 ) -> Any:  # fmt: skip
     """The motion of one design: its status."""
-    y, new, scales, clock, sums = empty(3), empty(3), zeros(3), zeros(7), zeros(6)
-    head, last, cut, still = zeros(7), zeros(7), zeros(6), empty(32)
-    rows, matrix, series, before = zeros((ROWS, 16)), empty((32, 32)), empty((3, 17)), empty((3, 17))
+    y, scales, clock, sums, count = empty(3), zeros(3), zeros(7), zeros(7), zeros(1)
+    rows, matrix = zeros((ROWS, 16)), empty((32, 32))
     history[:] = nan
-    if not start(law, data, how[1], y, scales):
-        return 6
-    scales[0], clock[T_END], clock[SHARP] = how[0], how[1], SHARPEST
-    clock[LEFT] = 1.0
-    crowd, begin, row, t, steps = 0, inf, 0, 0.0, 0
+    scales[0], clock[T_END], clock[SHARP], clock[LEFT], sums[5] = how[0], how[1], SHARPEST, 1.0, -1.0
+    row: Any = 0
+    steps: Any = 0
     status: Any = -1
-    sums[0], sums[2] = energy_of(y, law, data), 0.5 * y[1] * y[1]
-    sums[5] = abs(sums[0])
     while status == -1 and steps < how[2]:
-        code = GOES_ON
-        if clock[CHOSEN] == 0.0:
-            code = choose(y, clock, knots, sheets, law, data, rows, still)
-        if code == RESTS and law[WAITS] > 0.0:
-            code = wait(y, clock, knots, sheets, law, data, rows, head)
-            while row < len(times) and times[row] <= clock[T]:
-                history[0, row], history[1, row], history[2, row] = place(y[0], law), 0.0, 0.0
-                row += 1
-            t, last[1] = clock[T], 0.0
-            if t >= how[1]:
-                status = 0
-                break
-            continue
-        while code == GOES_ON and row < len(times) and times[row] <= t:
-            tell_at(t, y[0], y[1], law, data, history, row)
-            if t == 0.0:
-                history[0, row], history[1, row] = law[THETA0], law[OMEGA_START]
-            row += 1
-        if code == GOES_ON:
-            code = step(
-                y, clock, scales, kinks, knots, sheets, law, data, table, rows, matrix, last, before, head,
-                series, cut, new,
-            )  # fmt: skip
-        status = end_of(code, cut, kinks)
-        if code != GOES_ON and code != CUT:
-            break
-        end = clock[T]
-        while row < len(times) and times[row] <= end:
-            s = (times[row] - t) / head[1]
-            q, v = value(series[0], y[0], s), value(series[1], y[1], s)
-            tell_at(times[row], q, v, law, data, history, row)
-            row += 1
+        most = int64(min(len(heads) * 1.0, how[2] - steps + 1.0))
+        code = advance(
+            y, clock, scales, kinks, knots, sheets, law, data, table, rows, matrix, heads[0:most], records,
+            ends, laws, count,
+        )  # fmt: skip
+        made = int64(count[0])
+        for k in range(1, made + 1):
+            if sums[5] < 0.0:
+                account(heads[1, 3:6], law, data, rows, sums)
+            row = tell(heads[k], records[k], ends[k, 0] == RESTING, times, row, laws[k], data, rows, history)
+            account(heads[k + 1, 3:6] if k < made else y, laws[k], data, rows, sums)
+        steps += made
+        status = end_of(code, ends[made], kinks)
+        if status == -1 and clock[T] >= how[1]:
+            status = 0
         for k in range(7):
-            last[k] = head[k]
+            heads[0, k] = heads[made, k]
         for k in range(3):
             for j in range(17):
-                before[k, j] = series[k, j]
-        account(y, new, law, data, sums)
-        scales[1] = max(scales[1], abs(y[1]))
-        t, steps = end, steps + 1
-        status = 0 if status == -1 and t >= how[1] else status
-        crowd += 1
-        if law[TORQUE] == FUNCTION and crowd == CROWD:
-            if status == -1 and abs(y[0] - begin) < NARROW and slides(t, y, law, data):
-                break
-            crowd, begin = 0, y[0]
-    return told(status, t, steps, y, law, sums, numbers)
+                records[0, k, j] = records[made, k, j]
+        count[0] = 1.0
+    for k in range(len(times)):
+        if times[k] == 0.0 and row > 0:
+            history[0, k], history[1, k] = law[THETA0], law[OMEGA_START]
+    return status if status == 6 else told(status, clock[T], steps, y, law, sums, numbers)
+
+
+def single(
+    work: float, law: Any, data: Any, kinks: Any, knots: Any, sheets: Any, table: Any, y: Any, clock: Any,
+    scales: Any, rows: Any, matrix: Any, heads: Any, records: Any, ends: Any, laws: Any, count: Any,
+    which: Any, t: Any, q: Any, v: Any, out: Any,
+) -> int:  # fmt: skip
+    """Panels of one motion, or the law at instants of it."""
+    if work == PANELS:
+        return advance(
+            y, clock, scales, kinks[0], knots, sheets[0], law[0], data[0], table, rows, matrix, heads,
+            records, ends, laws, count,
+        )  # fmt: skip
+    return values(laws, which, t, q, v, data[0], out)
 
 
 def designs(
-    law: Any, data: Any, kinks: Any, knots: Any, sheets: Any, times: Any, how: Any, table: Any, history: Any,
-    status: Any, numbers: Any,
+    law: Any, data: Any, kinks: Any, knots: Any, sheets: Any, table: Any, heads: Any, records: Any, ends: Any,
+    laws: Any, times: Any, how: Any, history: Any, status: Any, numbers: Any,
 ) -> None:  # fmt: skip
     """Every design: histories, status, and end, energy residual, work and its rounding as numbers."""
     for n in range(len(law)):
@@ -176,5 +174,6 @@ def designs(
             for k in range(4):
                 numbers[n, k] = nan
             status[n] = follow(
-                law[n], data[n], kinks[n], knots, sheets[n], times, how, table, history[n], numbers[n]
-            )
+                law[n], data[n], kinks[n], knots, sheets[n], times, how, table, heads, records, ends, laws,
+                history[n], numbers[n],
+            )  # fmt: skip

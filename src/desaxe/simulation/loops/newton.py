@@ -1,61 +1,26 @@
-"""A panel of time in plain loops, which are compiled (`advance`): the law at its nodes, and Newton's method.
+"""A panel of time in plain loops, which are compiled (`advance`): Newton's method for the state at its nodes.
 
 The matrix is made at the first guess, and again only where the iteration is slow.
 
-state    q at the nodes, then v
-rows     values at the nodes, in the order below, behind those of the kernel (see `state`)
 table    places of the nodes; running integrals; the series of an integral; the last two terms of a series;
-         values at both ends; the series of values
+         values at both ends; the series of values; the running integrals, transposed
 scales   relative tolerance, largest |v| so far, the latter with this panel
 """
 
 from __future__ import annotations
 
-from math import cos, inf, nan, pi, sin, sqrt
+from math import inf
 from typing import TYPE_CHECKING
 
-from numpy import empty, int64, zeros
+from numpy import empty, int64
 
-from ...compiler.llvm.loops import address, apart, call
-from .state import (
-    ANSWER,
-    BEND,
-    CONSTANT,
-    CONTACT,
-    CONTACT_DATA,
-    DRAG,
-    EDGE,
-    FIRST,
-    FORCE,
-    FUNCTION,
-    GRAVITY,
-    GRAVITY_SLOPE,
-    HALF,
-    INERTIA,
-    INERTIA_SLOPE,
-    KERNEL,
-    LAST,
-    LEANS,
-    OUTPUTS,
-    POSITION,
-    PRESSED,
-    RUBS,
-    SIDEWAYS,
-    TORQUE,
-    TRAVEL,
-    piece,
-    quantities,
-    reduced,
-)
+from ...compiler.llvm.loops import apart
+from .law import HALF, Q_BY_Q, Q_BY_V, RATE_Q, RATE_V, SLOPE, TIME, V_BY_Q, V_BY_V, law_at
 
 if TYPE_CHECKING:
     from typing import Any
 
-TIME, ANGLE, SPEED, TURNED = range(OUTPUTS, OUTPUTS + 4)  # as a compiled torque takes them
-SLOPE, RATE_Q, RATE_V, RATE_W, Q_BY_Q, Q_BY_V, V_BY_Q, V_BY_V, CURVED = range(OUTPUTS + 4, OUTPUTS + 13)
-BY_THETA, BY_OMEGA, NORMAL, WEDGE, UNSURE, BENT, ROWS = range(OUTPUTS + 13, OUTPUTS + 20)
 RUNNING, SERIES, TAILS, ENDS, POINTS, ACROSS = 1, 17, 34, 36, 38, 54  # rows of the table
-NONE, STOP = 1, 2  # the law has no value; an exception ends the motion
 ITERATIONS = 14
 SLOW = 0.1  # of the step before: then the matrix is made anew
 SMALL_PIVOT = 0.5  # of a matrix that differs from 1 by the length of a panel: below it rows are exchanged
@@ -64,143 +29,6 @@ BLUR = 4e-16  # over cos(q)^2: the rounding of the rates next to a limit angle
 ROUNDING = 4e-15  # of the size of a coordinate
 DEVIATES = 30.0  # tolerances: by so much a rate differs where nodes have missed a jump
 TAIL = 30.0  # tolerances: the last terms of the rates, over the panel; its inside is far more exact
-NOISE = 1e-12  # of the terms of the normal force: below it, its sign is rounding
-STEP = 1e-7  # of an angle or a speed: a difference has seven digits
-
-
-def function_at(law: Any, rows: Any, slopes: Any) -> int:
-    """The torque of a compiled function at the nodes, and its differences if asked for."""
-    function = int64(law[TORQUE + 1])
-    code = call(function, rows[TIME], 16, 16)
-    if code != 0 or slopes == 0:
-        return code
-    moved: Any = empty((4, 16))
-    for k in range(2):
-        step = STEP
-        if k == 1:
-            for i in range(16):
-                step = max(step, STEP * abs(rows[SPEED, i]))
-        for i in range(16):
-            moved[0, i], moved[1, i], moved[2, i] = rows[TIME, i], rows[ANGLE, i], rows[SPEED, i]
-            moved[1 + k, i] += step
-        if call(function, moved[0], 16, 16) != 0:
-            return NONE
-        for i in range(16):
-            rows[BY_THETA + k, i] = (moved[3, i] - rows[TURNED, i]) / step
-    return 0
-
-
-def places(state: Any, law: Any, rows: Any) -> None:
-    """Angles and dtheta/dq, NaN beyond a limit angle at which the inertia grows."""
-    half, middle = law[HALF], 0.5 * (law[FIRST] + law[LAST])
-    for i in range(16):
-        q = state[i]
-        if half > 0.0:
-            rows[ANGLE, i] = middle + half * sin(q)
-            rows[SLOPE, i] = half * cos(q) if abs(q) < 0.5 * pi else nan
-            rows[BENT, i] = sin(q) / cos(q)
-        else:
-            rows[ANGLE, i] = min(max(q, law[FIRST] + EDGE), law[LAST] - EDGE)
-            rows[SLOPE, i] = 1.0
-
-
-def pushes(law: Any, rows: Any, slopes: Any) -> int:
-    """The torque at the nodes and that of the force and of gravity, with their derivatives."""
-    if law[TORQUE] == FUNCTION:
-        code = function_at(law, rows, slopes)
-        if code != 0:
-            return code
-    pushed = law[FORCE] != CONSTANT or law[FORCE + 1] != 0.0
-    for i in range(16):
-        theta, omega, Y, travel = rows[ANGLE, i], rows[SPEED, i], rows[POSITION, i], rows[TRAVEL, i]
-        if law[TORQUE] != FUNCTION:
-            value, by_theta, by_omega, by_Y = piece(law[TORQUE:FORCE], theta, omega, Y)
-            rows[TURNED, i], rows[BY_THETA, i], rows[BY_OMEGA, i] = value, by_theta + by_Y * travel, by_omega
-        if pushed:
-            value, by_theta, by_omega, by_Y = piece(law[FORCE:SIDEWAYS], theta, omega, Y)
-            rows[TURNED, i] += value * travel
-            rows[BY_THETA, i] += (by_theta + by_Y * travel) * travel + value * rows[BEND, i]
-            rows[BY_OMEGA, i] += by_omega * travel
-        rows[BY_THETA, i] -= rows[GRAVITY_SLOPE, i]
-    return 0
-
-
-def law_at(state: Any, law: Any, data: Any, rows: Any, slopes: Any) -> int:
-    """The rates at the nodes, and their derivatives if asked for; TIME is known."""
-    if law[KERNEL] == 0.0:
-        return call(int64(law[ANSWER]), state, rows, slopes)
-    angles: Any = empty(16)
-    places(state, law, rows)
-    for i in range(16):
-        angles[i] = reduced(rows[ANGLE, i])
-    if quantities(angles, law, data, rows) != 0 and law[ANSWER] != 0.0:
-        return call(int64(law[ANSWER]), state, rows, slopes)
-    for i in range(16):
-        rows[SPEED, i] = state[16 + i] / (sqrt(rows[INERTIA, i]) if rows[INERTIA, i] >= 0.0 else nan)
-    code = pushes(law, rows, slopes)
-    if law[RUBS] > 0.0 and code == 0:
-        guide: Any = empty((4, 16))
-        if guide_at(angles, law, rows, guide) != 0:
-            return call(int64(law[ANSWER]), state, rows, slopes)
-        rub(law, rows, guide)
-    if code == 0:
-        fill_rates(law, rows)
-    return code
-
-
-def guide_at(angles: Any, law: Any, rows: Any, guide: Any) -> int:
-    """The normal force without friction at alpha = 0, its derivatives by alpha and omega, and phi: rows."""
-    words: Any = zeros(20, int64)
-    forces: Any = empty((2, 16))
-    for i in range(16):
-        theta, omega, Y = rows[ANGLE, i], rows[SPEED, i], rows[POSITION, i]
-        forces[0, i] = piece(law[SIDEWAYS:RUBS], theta, omega, Y)[0]
-        forces[1, i] = piece(law[FORCE:SIDEWAYS], theta, omega, Y)[0]
-    words[0], words[1] = address(angles), address(rows[SPEED])
-    words[2], words[3], words[8] = address(forces[0]), address(forces[1]), 16
-    for k in range(4):
-        words[4 + k] = address(guide[k])
-    for k in range(8):
-        words[9 + k] = 8
-    return call(int64(law[CONTACT]), words, words[8:], words[9:], int64(law[CONTACT_DATA]))
-
-
-def rub(law: Any, rows: Any, guide: Any) -> None:
-    """What friction takes at the nodes, off the push and its derivatives; the normal force without it.
-
-    Derivatives are of its torque by alpha and omega alone: good enough for an iteration.
-    """
-    for i in range(16):
-        inertia, omega = rows[INERTIA, i], rows[SPEED, i]
-        by_alpha, bent = guide[1, i] / inertia, 0.5 * rows[INERTIA_SLOPE, i] * omega * omega
-        moved = by_alpha * (rows[TURNED, i] - rows[GRAVITY, i] - bent)
-        free = guide[0, i] + moved
-        rows[UNSURE, i] = NOISE * (abs(guide[0, i]) + abs(moved))
-        arm = law[DRAG] * rows[TRAVEL, i]
-        lean = law[LEANS] * sin(guide[3, i]) / cos(guide[3, i])
-        wedge = lean * law[DRAG] - arm * by_alpha
-        rows[NORMAL, i], rows[WEDGE, i] = law[PRESSED] * free, law[PRESSED] * wedge
-        share = arm * law[PRESSED] / (1.0 - law[PRESSED] * wedge)
-        rows[TURNED, i] -= share * free
-        by_omega = rows[BY_OMEGA, i]
-        rows[BY_THETA, i] *= 1.0 - share * by_alpha
-        rows[BY_OMEGA, i] -= share * (guide[2, i] + (by_omega - rows[INERTIA_SLOPE, i] * omega) * by_alpha)
-
-
-def fill_rates(law: Any, rows: Any) -> None:
-    """The rates at the nodes and their derivatives, from inertia and push."""
-    apart()
-    for i in range(16):
-        slope, inertia, omega = rows[SLOPE, i], rows[INERTIA, i], rows[SPEED, i]
-        root, left, by_omega = sqrt(max(inertia, 0.0)), rows[TURNED, i] - rows[GRAVITY, i], rows[BY_OMEGA, i]
-        gain, speed, steeper = 1.0 / (root * slope), omega / slope, 0.5 * rows[INERTIA_SLOPE, i] / inertia
-        rows[RATE_Q, i], rows[RATE_V, i], rows[RATE_W, i] = speed, left / root, rows[TURNED, i] * omega
-        rows[CURVED, i] = left / root * gain
-        rows[Q_BY_Q, i], rows[Q_BY_V, i], rows[V_BY_V, i] = -omega * steeper, gain, by_omega / inertia
-        rows[V_BY_Q, i] = (rows[BY_THETA, i] - (by_omega * omega + left) * steeper) * slope / root
-    if law[HALF] > 0.0:
-        for i in range(16):
-            rows[Q_BY_Q, i] += rows[RATE_Q, i] * rows[BENT, i]
 
 
 def product(row: Any, values: Any) -> float:

@@ -13,26 +13,28 @@ from __future__ import annotations
 from math import copysign, floor, inf, pi, sqrt
 from typing import TYPE_CHECKING
 
-from numpy import empty, nextafter
+from numpy import empty, int64, nextafter
 
 from ...compiler.llvm.loops import apart
-from .newton import (
+from .law import (
     ANGLE,
+    CALLS,
+    COUNT,
     CURVED,
-    DEVIATES,
-    ENDS,
-    POINTS,
+    END,
+    HALF,
+    PROBE,
     RATE_Q,
     RATE_V,
     ROWS,
     STOP,
-    TAIL,
+    TERM,
+    TERMS,
     TIME,
     law_at,
-    newton,
-    product,
-)
-from .state import FUNCTION, HALF, KERNEL, NEXT, PROBE, TORQUE
+    motion,
+)  # fmt: skip
+from .newton import DEVIATES, ENDS, POINTS, TAIL, newton, product
 
 if TYPE_CHECKING:
     from typing import Any
@@ -41,6 +43,7 @@ T, WISH, T_END, SHARP, LEFT, FLIPPED, CHOSEN = range(7)  # of the clock
 GOES_ON, FAILED, STOPPED = range(3)
 AHEAD = 1.3  # of a panel: so far its series guess the next one, from there on straight lines
 BEYOND = 1.15  # of a panel: so far its series reach a limit angle, next to which S has no digits
+BEHIND, ABOUT = 1.1, 1.01  # of the way to a cut: pieces go on smoothly, but those of a function end
 AIM = 0.01  # tolerances: the error that the next length is chosen for
 GROWTH = 2.0  # from panel to panel
 LEAST_H = 1e-6  # of the motion: no panel is shortened to less to tell a limit angle
@@ -56,13 +59,6 @@ def value(series: Any, start: float, s: float) -> float:
         before, now = now, (2.0 * n + 1.0) / (n + 1.0) * (x * now) - n / (n + 1.0) * before
         total += series[n + 1] * now
     return float(start + total)
-
-
-def motion(t: float, y: Any, law: Any, data: Any, rows: Any, still: Any) -> int:
-    """The rates at an instant, at every node of `rows`."""
-    for i in range(16):
-        rows[TIME, i], still[i], still[16 + i] = t, y[0], y[1]
-    return law_at(still, law, data, rows, 0)
 
 
 def guess(t: float, h: float, y: Any, last: Any, series: Any, table: Any, rows: Any, state: Any) -> None:
@@ -123,14 +119,15 @@ def next_kink(theta: float, way: float, least: float, kinks: Any, law: Any) -> A
     The first is one that ends it; the row is -1 where the piece of a load ends.
     """
     best, row, ends, angle = inf, -1, False, 0.0
-    for k in range(3):
-        gap = (law[NEXT + k] - theta) * way
+    for k in range(int64(law[COUNT])):
+        end = law[TERMS + TERM * k + END]
+        gap = (end - theta) * way
         if gap > 0.0 and gap < best:
-            best, angle = gap, law[NEXT + k]
+            best, angle = gap, end
     for k in range(len(kinks)):
-        gap, end = gap_to(kinks[k], theta, way, least), kinks[k, 2] >= 0.0
-        if gap < best - NEAR or (gap < best and ends == end) or (end and not ends and gap < best + NEAR):
-            best, row, ends, angle = gap, k, end, kinks[k, 0]
+        gap, last = gap_to(kinks[k], theta, way, least), kinks[k, 2] >= 0.0
+        if gap < best - NEAR or (gap < best and ends == last) or (last and not ends and gap < best + NEAR):
+            best, row, ends, angle = gap, k, last, kinks[k, 0]
             if kinks[k, 1] < inf:
                 angle += kinks[k, 1] * floor((theta + way * gap - angle) / kinks[k, 1] + 0.5)
     return best, row, angle
@@ -146,7 +143,8 @@ def until_cut(y: Any, law: Any, kinks: Any, rows: Any) -> float:
     else:
         gap, _, _ = next_kink(theta, way, NEAR, kinks, law)
         if gap < inf:
-            shortest = 1.1 * time_over(gap, speed * way, bend * way)
+            beyond = ABOUT if law[CALLS] == 2.0 else BEHIND
+            shortest = beyond * time_over(gap, speed * way, bend * way)
     return shortest if shortest > 0.0 else inf
 
 
@@ -262,8 +260,7 @@ def one(
         if shorter > 0.0:
             h = shorter
             continue
-        by_function = law[TORQUE] == FUNCTION or law[KERNEL] == 0.0
-        if by_function and jumps(t, h, y, scales, law, data, table, rows, series):
+        if law[CALLS] > 0.0 and jumps(t, h, y, scales, law, data, table, rows, series):
             h *= 0.5
             continue
         grown = h * min(GROWTH, max(factor, 0.5))
