@@ -163,9 +163,8 @@ class March:
         elif code == march.CUT:
             self._cut(*self._kept[-1]["ends"][-1].tolist())
         elif code == march.CHATTERS:
-            across = " on: torque or load jumps back and forth across " + named(
-                "omega", self.state.omega, ".6g"
-            )
+            speed = float(self.scales[2] / sqrt(self.model.inertia(self.state.theta)))
+            across = " on: torque or load jumps back and forth across " + named("omega", speed, ".6g")
             remedy = "; let it change over a range of omega"
             self.stop(FAILED, "the crank chatters from t = " + time_of(self.t) + across + remedy)
         elif self.t >= self.t_end:
