@@ -126,7 +126,7 @@ class ToleranceStatus(Status):
     NO_VALUE = 1, "no value at the means"
     SOME_WITHOUT = 2, "some samples have no value"
     KINK = 3, "a kink at the means: derivatives say little"
-    JUMP = 4, "the value jumps next to the means: derivatives say nothing"
+    JUMP = 4, "the value jumps within the tolerances: derivatives say nothing, trust the samples"
     NO_DERIVATIVE = 5, "no derivative at the means or next to them"
 
 

@@ -201,7 +201,6 @@ def test_a_kink_is_told(name, ec, kink):
         )
 
 
-STEP_OF_FORCE = {"AB": 0.075, "ec": 0.015, "omega0": 2.0 * math.pi, "m_slider": 120.0}
 MEASURES = {  # what a wrong search of peaks gave, by the value of ec: value and slope
     "a jump at the means": (lambda ec: np.where(ec < 0.1, 5.0, 9.0) + ec, np.ones_like, 4),
     "a wrong value on one side": (lambda ec: np.where(ec > 0.1, 0.5, 1.0) * ec, np.ones_like, 4),
@@ -235,6 +234,22 @@ class Peak(NamedTuple):
 
     value: np.ndarray
     gradient: dict
+
+
+@pytest.mark.parametrize(("sigmas_away", "status"), [(0.5, 4), (2.5, 4), (12.0, 0)])
+def test_a_jump_within_the_tolerance_is_told(sigmas_away, status):
+    """A force that sets in at a position: T = -F dY/dtheta for the share of the rods beyond it."""
+    theta, std = 1.0, 1e-4
+    along = dx.evaluate(["Y", "Y_wrt_BC", "Y_wrt_theta"], theta=theta, ec=0.0, AB=0.1, BC=0.3)
+    at = along["Y"] + sigmas_away * std * along["Y_wrt_BC"]
+    load = dx.over_Y([0.2, at, 0.4], [0.0, -900.0, -900.0], kind="step")
+    press = {"theta": theta, "ec": 0.0, "AB": 0.1, "omega0": 1.0, "F_Y": load}
+    result = dx.tolerance("T_in", BC=plus_minus(0.3, 3.0 * std), samples=20_000, **press)
+    share, drawn = stats.norm.sf(sigmas_away), result["monte_carlo"]
+    expected = 900.0 * abs(along["Y_wrt_theta"])
+    assert abs(drawn["mean"]) == pytest.approx(share * expected, abs=0.01 * expected)
+    assert result["status"] == status
+    assert ("jumps within the tolerances" in repr(result)) == (status == 4)
 
 
 def test_a_peak_at_a_limit_angle_has_no_derivative():

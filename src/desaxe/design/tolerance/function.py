@@ -11,6 +11,8 @@ from ..measures import Measure, Measured, measured
 from .uncertain import Array
 
 KINK = 0.1  # of the first-order change: slopes that jump by more have no derivative
+FINE = 5  # values along each input next to the means
+WITHIN = 65  # the same over its tolerance
 ROUNDING = 1e-11  # of a value
 
 
@@ -43,38 +45,52 @@ class SampledQuantity(NamedTuple):
     def _measured(self, columns: Mapping[str, Any]) -> Measured:
         return measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure]
 
-    def beside(self, centre: Mapping[str, Any], steps: Array) -> "Beside":
-        """Values and slopes up to two steps beside a point, along each input."""
+    def along(self, centre: Mapping[str, Any], steps: Array, count: int) -> "Along":
+        """Values and slopes at so many steps along each input, around a point."""
         n = len(self.varying)
-        moves = (np.eye(n)[:, None, :] * steps * np.arange(-2.0, 3.0)[:, None]).reshape(-1, n)
+        moves = (np.eye(n)[:, None, :] * steps * (np.arange(count) - count // 2)[:, None]).reshape(-1, n)
         columns = {p: centre[p] + moves[:, i] for i, p in enumerate(self.varying)}
-        return Beside(steps, self.values(columns).reshape(n, 5), self.slopes(columns).reshape(n, 5, n))
+        return Along(steps, self.values(columns).reshape(n, count), self.slopes(columns).reshape(n, count, n))
+
+    def status(self, centre: Mapping[str, Any], fine: Array, reach: Array) -> ToleranceStatus:
+        """The status at a point: smooth next to it and without a jump within reach, or the reason."""
+        beside = self.along(centre, fine, FINE)
+        if not beside.is_known:
+            return ToleranceStatus.NO_DERIVATIVE
+        wide = self.along(centre, 2.0 * reach / (WITHIN - 1), WITHIN)
+        if beside.jumps or wide.jumps:
+            return ToleranceStatus.JUMP
+        return ToleranceStatus.KINK if beside.has_kink else ToleranceStatus.OK
 
 
-class Beside(NamedTuple):
-    """A function at -2, -1, 0, 1 and 2 steps along each of its inputs: values, and slopes by all of them."""
+class Along(NamedTuple):
+    """A function at equal steps along each of its inputs: values, and slopes by all of them."""
 
     steps: Array
     values: Array
     slopes: Array
 
-    def status(self) -> ToleranceStatus:
-        """The status of the function here: smooth, or the reason why it is not.
+    @property
+    def is_known(self) -> bool:
+        """True where all values and slopes are finite."""
+        return bool(np.isfinite(self.values).all() and np.isfinite(self.slopes).all())
 
-        Where it has slopes its value changes as they say, across a kink too; if not, it jumps.
-        """
-        if not (np.isfinite(self.values).all() and np.isfinite(self.slopes).all()):
-            return ToleranceStatus.NO_DERIVATIVE
-        along = np.einsum("iki->ik", self.slopes) * self.steps[:, None]
-        missed = np.abs(np.diff(self.values) - 0.5 * (along[:, 1:] + along[:, :-1]))
-        allowed = np.abs(np.diff(along)) + KINK * np.abs(along).max(axis=1, keepdims=True)
-        rounding = ROUNDING * np.abs(self.values).max()
-        if (missed > allowed + rounding).any():
-            return ToleranceStatus.JUMP
-        return ToleranceStatus.KINK if self._has_kink(rounding) else ToleranceStatus.OK
+    @property
+    def jumps(self) -> bool:
+        """True where a value changes as its slopes do not say; across a kink it does."""
+        change = np.einsum("iki->ik", self.slopes) * self.steps[:, None]
+        with np.errstate(invalid="ignore"):
+            missed = np.abs(np.diff(self.values) - 0.5 * (change[:, 1:] + change[:, :-1]))
+            allowed = np.abs(np.diff(change)) + KINK * np.nanmax(np.abs(change), axis=1, keepdims=True)
+            return bool((missed > allowed + self._rounding).any())
 
-    def _has_kink(self, rounding: float) -> bool:
+    @property
+    def _rounding(self) -> float:
+        return float(ROUNDING * np.nanmax(np.abs(self.values)))
+
+    @property
+    def has_kink(self) -> bool:
         """True if differences of the slopes over twice the steps are other quotients: half, across a kink."""
         near, far = (self.slopes[:, 2 + k] - self.slopes[:, 2 - k] for k in (1, 2))
         apart = np.abs(near - 0.5 * far) * self.steps
-        return bool((apart > 2.0 * KINK * np.abs(self.slopes * self.steps).max() + rounding).any())
+        return bool((apart > 2.0 * KINK * np.abs(self.slopes * self.steps).max() + self._rounding).any())

@@ -20,11 +20,12 @@ from ...support.forks import IMPORTS, imported
 from ...support.progress import Steps, progress_bar
 from ...support.shown import shown
 from ..measures import checked, is_named
-from .function import Beside, SampledQuantity
+from .function import SampledQuantity
 from .scatter import Tolerance
 from .uncertain import DISTRIBUTIONS, Array, Inexact, read
 
 BLOCK = 65536  # samples at a time
+FAR = 3.0  # standard deviations of a distribution within which a jump is looked for
 STEP = 1e-3  # of a standard deviation or so: how far beside the means it is looked for kinks and jumps
 PERCENTS = (0.135, 2.5, 50.0, 97.5, 99.865)
 BOXES = 2000  # of an enclosure
@@ -74,8 +75,9 @@ def tolerance(
     agreement      dict mean, std: how far the Monte Carlo is from the first order, in standard errors; far
                    where the quantity is curved
     status         0 ok; 1 no value at the means; 2 some samples have none; 3 a kink at the means, such as
-                   that of |ec| at ec = 0: derivatives say little; 4 the value jumps next to the means, 5 it
-                   has no derivative there (a peak at a limit angle): trust the samples alone
+                   that of |ec| at ec = 0: derivatives say little; 4 the value jumps along an input within its
+                   tolerance (three standard deviations of a distribution), 5 it has no derivative at
+                   the means (a peak at a limit angle): trust the samples alone
 
     Inputs vary independently. Raises as `evaluate` does.
 
@@ -121,13 +123,25 @@ def _answer(
     centre = {row.name: row.mean for row in rough}
     value = float(np.reshape(function.values({n: np.array([x]) for n, x in centre.items()}), -1)[0])
     slopes = function.slopes({n: np.array([x]) for n, x in centre.items()})[0]
-    steps = STEP * np.array([row.std for row in rough])
-    beside = function.beside(centre, steps)
-    first, shares = _propagated(value, slopes, rough)
+    std = np.array([row.std for row in rough])
+    reach = np.array([row.std * FAR if row.tolerance is None else row.tolerance for row in rough])
+    parts = (slopes * std) ** 2
+    total = float(parts.sum())
+    shares = {row.name: float(p / total) if total else 0.0 for row, p in zip(rough, parts, strict=True)}
+    first = {"mean": value, "std": sqrt(total)}
     progress.next(f"{count} samples")
     result = _sampled(function, rough, count, seed)
     drawn = _monte_carlo(result)
     progress.next("worst case")
+
+    def apart(key: str) -> float:
+        """How far the samples are from the first order, in standard errors."""
+        error = drawn[f"{key}_error"]
+        return float((drawn[key] - first[key]) / error) if error else 0.0
+
+    status = function.status(centre, STEP * std, reach)
+    if np.isnan(value) or drawn["infeasible"]:
+        status = ToleranceStatus.NO_VALUE if np.isnan(value) else ToleranceStatus.SOME_WITHOUT
     answer = {
         "value": value,
         "gradient": {row.name: float(s) for row, s in zip(rough, slopes, strict=True)},
@@ -135,17 +149,10 @@ def _answer(
         "monte_carlo": drawn,
         "contributions": dict(sorted(shares.items(), key=lambda item: -item[1])),
         "worst_case": _worst_case(function, value, slopes, rough, result, covered),
-        "agreement": _agreement(first, drawn),
-        "status": int(_status(value, drawn["infeasible"], beside)),
+        "agreement": {key: apart(key) for key in ("mean", "std")},
+        "status": int(status),
     }
     return Tolerance(answer, name)
-
-
-def _status(value: float, lost: float, beside: Beside) -> ToleranceStatus:
-    """The status of an answer; see `tolerance`."""
-    if np.isnan(value):
-        return ToleranceStatus.NO_VALUE
-    return ToleranceStatus.SOME_WITHOUT if lost else beside.status()
 
 
 def _check(distribution: str, sigmas: Any, samples: Any, seed: Any) -> None:
@@ -178,14 +185,6 @@ def _function(name: Any, inputs: Mapping[str, Any], branch: int) -> SampledQuant
     return SampledQuantity(checked(name) if design else ("at", None, name), fixed, varying, branch)
 
 
-def _propagated(value: float, slopes: Array, rough: Sequence[Inexact]) -> tuple[Any, Any]:
-    """Mean and standard deviation to first order, and each input's share of the variance."""
-    parts = (slopes * np.array([row.std for row in rough])) ** 2
-    total = parts.sum()
-    shares = {row.name: float(p / total) if total else 0.0 for row, p in zip(rough, parts, strict=True)}
-    return {"mean": value, "std": float(np.sqrt(total))}, shares
-
-
 def _sampled(function: SampledQuantity, rough: Sequence[Inexact], count: int, seed: int) -> Array:
     """The values of random samples, drawn and evaluated in blocks."""
     random = np.random.default_rng(seed)
@@ -198,25 +197,23 @@ def _sampled(function: SampledQuantity, rough: Sequence[Inexact], count: int, se
 
 def _monte_carlo(every: Array) -> dict[str, Any]:
     """Mean, scatter and percentiles of samples; those without a value are counted."""
-    count = every.size
     known = every[np.isfinite(every)]
-    lost = 1.0 - known.size / count
+    about = {"samples": every.size, "infeasible": 1.0 - known.size / every.size}
     if known.size < 2:
         nothing = dict.fromkeys(("mean", "std", "mean_error", "std_error", "least", "largest"), np.nan)
-        return {**nothing, "percentiles": {}, "samples": count, "infeasible": lost}
+        return {**nothing, "percentiles": {}, **about}
     imported("numpy.ma")  # by `percentile`
-    std = float(known.std(ddof=1))
-    fourth = float(np.mean((known - known.mean()) ** 4))
+    mean, std = float(known.mean()), float(known.std(ddof=1))
+    fourth = float(np.mean((known - mean) ** 4))
     return {
-        "mean": float(known.mean()),
+        "mean": mean,
         "std": std,
         "mean_error": std / sqrt(known.size),
         "std_error": sqrt(max(fourth - std**4, 0.0) / known.size) / (2.0 * std) if std else 0.0,
         "least": float(known.min()),
         "largest": float(known.max()),
         "percentiles": dict(zip(PERCENTS, np.percentile(known, PERCENTS).tolist(), strict=True)),
-        "samples": count,
-        "infeasible": lost,
+        **about,
     }
 
 
@@ -229,10 +226,10 @@ def _worst_case(
     sigmas: float | None,
 ) -> dict[str, Any] | None:
     """The extreme values within all tolerances, and the share of the samples outside; see `tolerance`."""
-    if any(row.tolerance is None for row in rough):
+    reach = {row.name: (row.mean, row.tolerance) for row in rough if row.tolerance is not None}
+    if len(reach) < len(rough):
         return None
-    reach = {row.name: float(row.tolerance or 0) for row in rough}
-    ranges = {row.name: Between(row.mean - reach[row.name], row.mean + reach[row.name]) for row in rough}
+    ranges = {name: Between(mean - size, mean + size) for name, (mean, size) in reach.items()}
     sure = _enclosed(function.at_point, {**function.fixed, **ranges}, function.branch)
     every = np.append(function.values(_corners(rough, slopes)), value) if sure is None else np.array(sure)
     lower, upper, known = float(every.min()), float(every.max()), samples[np.isfinite(samples)]
@@ -243,9 +240,9 @@ def _worst_case(
 
 def _corners(rough: Sequence[Inexact], slopes: Array) -> dict[str, Array]:
     """Every input at either end of its tolerance; of very many inputs only where the derivatives point."""
-    sides = np.array(list(product((-1.0, 1.0), repeat=len(rough)))) if len(rough) <= MOST_CORNERED else None
-    if sides is None:
-        sides = np.sign(slopes) * np.array([[-1.0], [1.0]])
+    sides = np.sign(slopes) * np.array([[-1.0], [1.0]])
+    if len(rough) <= MOST_CORNERED:
+        sides = np.array(list(product((-1.0, 1.0), repeat=len(rough))))
     return {row.name: row.mean + sides[:, i] * float(row.tolerance or 0) for i, row in enumerate(rough)}
 
 
@@ -262,13 +259,3 @@ def _enclosed(name: str, ranges: Mapping[str, Any], branch: int) -> tuple[float,
     result = enclose(name, branch=branch, boxes=BOXES, **ranges)
     ends = result["lower"], result["upper"]
     return ends if np.isfinite(ends).all() else None
-
-
-def _agreement(first: Any, drawn: Any) -> dict[str, float]:
-    """The distance of the Monte Carlo from the first order, in standard errors."""
-
-    def apart(key: str) -> float:
-        error = drawn[f"{key}_error"]
-        return float((drawn[key] - first[key]) / error) if error else 0.0
-
-    return {key: apart(key) for key in ("mean", "std")}
