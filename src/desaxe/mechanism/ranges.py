@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from ..support.shown import shown
 from ..units.parse import exact, rounded
 from ..units.text import with_unit_of
-from .inputs import INPUTS
+from .inputs import row_of
 from .messages import named
 from .read import in_si
 
@@ -79,6 +79,12 @@ def ends_of(name: str, given: PlusMinus) -> tuple[float, float]:
     return rounded(name, str(given), value - tolerance), rounded(name, str(given), value + tolerance)
 
 
+def value_and_tolerance(name: str, given: PlusMinus) -> tuple[float, float]:
+    """A value and its tolerance, the latter not in percent; ValueError for a bad one."""
+    value, tolerance = (rounded(name, str(given), number) for number in _tolerance(name, given))
+    return value, tolerance
+
+
 def middle_of(name: str, value: Between) -> tuple[float, float]:
     """The middle of a range and half its width; ValueError where the lower end is not first."""
     low, high = (_number(name, end, value) for end in value)
@@ -91,7 +97,7 @@ def _tolerance(name: str, given: PlusMinus) -> tuple[Fraction, Fraction]:
     value = _number(name, given.value, given)
     tolerance = with_unit_of(given.value, given.tolerance)
     if isinstance(tolerance, str) and tolerance.strip().endswith("%"):
-        share = _number("mu", tolerance.strip().removesuffix("%"), given) / 100  # a plain number
+        share = exact(name, tolerance.strip().removesuffix("%"), "1") / 100
         result = share * abs(value)
     else:
         result = _number(name, tolerance, given)
@@ -103,8 +109,8 @@ def _tolerance(name: str, given: PlusMinus) -> tuple[Fraction, Fraction]:
 def _number(name: str, value: Any, whole: Any) -> Fraction:
     """The number as it is written."""
     if isinstance(value, str):
-        return exact(name, value, INPUTS[name].unit)
-    number = in_si(INPUTS[name], value) if hasattr(value, "magnitude") else value
+        return exact(name, value, row_of(name).unit)
+    number = in_si(row_of(name), value) if hasattr(value, "magnitude") else value
     try:
         return Fraction(repr(float(number)))
     except (TypeError, ValueError, OverflowError):

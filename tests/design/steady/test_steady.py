@@ -253,6 +253,7 @@ AGAINST = {**PRESS, "F_Y": dx.over_Y([0.15, 0.25], [-200, -200], [0, 0])}  # 3.2
 # A force against the stroke inward is positive; with the wrong sign it gives 240 J on its 40 mm.
 DRIVING = dx.over_stroke([0.0, 0.03, 0.04], [0, 0, 0], [-8e3, -6e3, 0], dead_centre="inner")
 DRIVEN = {**PRESS, "F_Y": DRIVING, "mu": 0.05}
+EDGE, *_ = drawn(56)  # no friction, and a table that ends without torque
 TOLD = "; the loads themselves drive the crank, 240 J a period: check their signs$"
 
 
@@ -267,6 +268,8 @@ TOLD = "; the loads themselves drive the crank, 240 J a period: check their sign
         # Beyond its last speed this motor has no torque, nor has the load a mean.
         (dx.over_omega([0.0, 5.0, 14.0], [300.0, 400.0, 0.0]), PRESS, "balances the loads"),
         (dx.over_omega([0.0, 5.0], [300.0, 400.0]), {**PRESS, "fluctuation": 0.01}, "too strong"),
+        # The same, where the slowest motion without torque is an edge: energy comes back from below alone.
+        (EDGE.pop("torque"), EDGE, "balances the loads"),
         (MOTOR, {"ec": 0.0, "AB": 0.05, "BC": 0.2, "m_slider": 1.0}, "inertia vanishes"),
         (dx.kloss(2.0, 0.2, 157.08, gear=15), DRIVEN, TOLD),
         (dx.kloss(2.0, 0.2, -157.08, gear=15), DRIVEN, TOLD),

@@ -20,14 +20,15 @@ from ...loads.along_motion import OfMotion
 from ...runtime.request import request
 from ...support.panels import WEIGHT
 from ..turn.cycle import NEAR
-from .designs import DesignRows
-from .orbit import Linear, Orbit
+from .designs import DesignRows, rate
+from .orbit import Linear, Orbit, energy
 
 Array = NDArray[Any]
 KEYS = ("period", "omega_mean", "fluctuation", "power_mean")  # that have derivatives
 STEPS = 360  # of a turn
 REFINED = 2  # times that a solution is corrected by what it leaves
 EXACT = 1e-8  # of a solution: a correction after which another one is below rounding
+ABOVE = 1.0 + 1e-6  # of an energy
 JUMP = 1e-9  # of the largest z': less is none
 
 
@@ -42,7 +43,7 @@ def figures_of(orbit: Orbit) -> tuple[dict[Any, Array], Array]:
     rows: dict[Any, Array] = {
         "E0": orbit.E0, "jams": orbit.jams, "period": period, "omega_mean": way * mean,
         "fluctuation": (fastest - slowest) / mean, "power_mean": work / period, "work": work,
-        "multiplier": multiplier, "stable": multiplier < 1.0, **_course(orbit),
+        "multiplier": multiplier, "stable": (multiplier < 1.0) & _is_held_above(orbit), **_course(orbit),
     }  # fmt: skip
     _, by_speed = designs.torque(orbit.course["theta"], omega)
     by_motor = designs.source.by(omega, {n: designs.each(v, 3) for n, v in designs.motor.items()})
@@ -67,6 +68,12 @@ def figures_of(orbit: Orbit) -> tuple[dict[Any, Array], Array]:
             ("power_mean", name): (way * by_work - work / period * by_period) / period,
         }
     return rows, orbit.unresolved(tuple(forcing.values()))
+
+
+def _is_held_above(orbit: Orbit) -> Array:
+    """True where a little more energy falls, too: else it is the edge of a band of motions, all periodic."""
+    E = energy(orbit.mesh, orbit.E0, orbit.F) * ABOVE
+    return np.asarray(orbit.mesh.integral(np.nan_to_num(rate(orbit.designs, orbit.course, E).g)) < 0.0)
 
 
 def _course(orbit: Orbit) -> dict[str, Array]:
