@@ -135,7 +135,7 @@ def _answer(
     progress.next("worst case")
 
     def apart(key: str) -> float:
-        """How far the samples are from the first order, in standard errors."""
+        """The distance of the samples from the first order, in standard errors."""
         error = drawn[f"{key}_error"]
         return float((drawn[key] - first[key]) / error) if error else 0.0
 
