@@ -46,7 +46,7 @@ class SampledQuantity(NamedTuple):
         return measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure]
 
     def along(self, centre: Mapping[str, Any], steps: Array, count: int) -> "Along":
-        """The values and slopes at so many steps along each input, around a point."""
+        """Sample values and slopes at equal steps along each input, around a point."""
         n = len(self.varying)
         moves = (np.eye(n)[:, None, :] * steps * (np.arange(count) - count // 2)[:, None]).reshape(-1, n)
         columns = {p: centre[p] + moves[:, i] for i, p in enumerate(self.varying)}
