@@ -28,9 +28,8 @@ from desaxe.compiler.program import Program, renamed
 from desaxe.compiler.text import write_function
 from desaxe.mechanism.inputs import INPUTS, LEAST
 from desaxe.mechanism.names import CENTRES, LOADS
-from desaxe.support.files import staging, swap_in
-from desaxe.support.generated import Generated
-from desaxe.support.locks import locked
+from desaxe.support.files import locked, staging, swap_in
+from desaxe.support.written import Generated
 
 from .build import Derivation
 from .groups import GROUPS, Group

@@ -2,7 +2,7 @@
 
 import pytest
 
-from desaxe.support.generated import Generated
+from desaxe.support.written import Generated
 
 
 def test_files_are_written_once_all_of_them_may_be(tmp_path):

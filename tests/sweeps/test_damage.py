@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.support.locks import locked
+from desaxe.support.files import locked
 
 INPUTS = {
     "theta": np.linspace(0.0, 6.0, 20), "ec": [-0.05, 0.9], "AB": 0.2, "BC": [0.1, 0.5], "omega0": 3.0,

@@ -17,7 +17,7 @@ import xarray as xr
 import zarr
 
 import desaxe as dx
-from desaxe.support.locks import locked
+from desaxe.support.files import locked
 from tests.effort import cases
 
 THETA = np.linspace(0.0, 2.0 * np.pi, 40)

@@ -1,10 +1,8 @@
 """The ground floor: general helpers, open to every room, independent of the mechanism.
 
 extras         a missing optional dependency as one line that says what to install
-files          files written whole or not at all
-written        the mark of outputs, by which desaxe knows what it may replace
-generated      generated texts: files to write, or to compare with those that are there
-locks          a lock across processes
+files          files written whole or not at all; locks across processes
+written        the mark of outputs, by which desaxe knows what it may replace; generated texts
 roots          one root of a function
 panels         functions as polynomials on panels: integrals, roots, extremes
 progress       how far long work is, and a bar on the terminal

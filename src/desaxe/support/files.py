@@ -18,12 +18,16 @@ from pathlib import Path
 from typing import Any
 
 from .forks import IMPORTS
-from .locks import opened, try_lock
 from .shown import printable, shown
+
+if sys.platform != "win32":
+    import fcntl
 
 PREFIX = ".desaxe-"
 # In a staging folder: what was moved out of the way, where two names cannot be swapped.
 _REPLACED = "replaced"
+WAIT = 60.0  # seconds for a lock that is held for milliseconds
+_FIRST_PAUSE, _LONGEST_PAUSE = 0.002, 0.1
 _UNLOCKED_AGE = 86_400.0  # seconds after which a staging folder is left, where there are no locks
 _KINDS = {
     stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device",
@@ -212,3 +216,57 @@ def exchange(one: Path, other: Path) -> bool:
         return int(library.renameat2(here, first, here, second, 2)) == 0
     except (AttributeError, OSError, TypeError):
         return False
+
+
+# ---- locks of folders between processes, which the system releases when a process ends ---------------
+
+
+@contextmanager
+def locked(folder: Path, wait: float = WAIT) -> Iterator[bool]:
+    """Lock an existing folder for the duration of a block.
+
+    Yields True while the lock is held and False where the system has no locks. Raises TimeoutError after
+    `wait` seconds, of short pauses, so that an interrupt takes effect at once.
+    """
+    descriptor = opened(folder)
+    if descriptor is None:
+        yield False
+        return
+    end, pause = time.monotonic() + wait, _FIRST_PAUSE
+    try:
+        while (held := try_lock(descriptor)) is False:
+            if time.monotonic() >= end:
+                raise TimeoutError(f"{printable(folder)}: another process has held its lock for {wait:g} s")
+            time.sleep(pause)
+            pause = min(2.0 * pause, _LONGEST_PAUSE)
+        try:
+            yield held is True
+        finally:
+            _release(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def opened(folder: Path, flags: int = 0) -> int | None:
+    """A descriptor of a folder; None on Windows, where folders cannot be opened."""
+    return None if sys.platform == "win32" else os.open(folder, os.O_RDONLY | os.O_DIRECTORY | flags)
+
+
+def try_lock(descriptor: int) -> bool | None:
+    """Try to lock a descriptor: True if locked, False if another process has it, None without support."""
+    if sys.platform != "win32":
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return True
+        except (BlockingIOError, PermissionError):
+            return False
+        except OSError:
+            pass
+    return None
+
+
+def _release(descriptor: int) -> None:
+    """Release a lock: closing is not enough if a forked child has a copy of the descriptor."""
+    if sys.platform != "win32":
+        with suppress(OSError):
+            fcntl.flock(descriptor, fcntl.LOCK_UN)

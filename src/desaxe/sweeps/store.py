@@ -20,9 +20,8 @@ from numpy.typing import NDArray
 from ..evaluation.labels import import_xarray
 from ..evaluation.plan import Part
 from ..support.extras import explained
-from ..support.files import kind_of, remove_strays, require_writable, staging, swap_in
+from ..support.files import kind_of, locked, remove_strays, require_writable, staging, swap_in
 from ..support.forks import IMPORTS
-from ..support.locks import locked
 from ..support.memory import size_text
 from ..support.shown import printable
 from ..support.signals import put_off

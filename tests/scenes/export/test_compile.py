@@ -18,7 +18,7 @@ import desaxe as dx
 from desaxe.scenes.export.compile import generated
 from desaxe.scenes.export.fmu.write import texts_of_fmu
 from desaxe.scenes.schema import SceneError
-from desaxe.support.locks import locked
+from desaxe.support.files import locked
 from tests.compiler.languages.tools import imported
 from tests.effort import first
 from tests.example_scenes import COMPACTOR, SMALL

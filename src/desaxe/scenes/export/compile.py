@@ -14,9 +14,8 @@ from ...mechanism.keywords import with_known_keywords
 from ...mechanism.own import using
 from ...support.checks import yes_or_no
 from ...support.files import as_path
-from ...support.generated import Generated
 from ...support.shown import printable
-from ...support.written import sealed
+from ...support.written import Generated, sealed
 from ..content import Content
 from ..scene import Scene
 from ..scene import scene as scene_of

@@ -27,12 +27,11 @@ from ...mechanism.names import FORCE_STATUS, STATUS, parts
 from ...mechanism.own import Definition, definitions, rows_of
 from ...mechanism.program import Variant, digest, program_of
 from ...runtime.specialise import specialise
-from ...support.generated import Generated
 from ...support.shown import printable
 from ...support.template import file_text, filled
 from ...support.toml import read_toml
 from ...support.version import version
-from ...support.written import UNSEALED, is_ours, sealed
+from ...support.written import UNSEALED, Generated, is_ours, sealed
 
 FACTS = ("status", "margin")
 

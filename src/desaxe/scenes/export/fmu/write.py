@@ -12,10 +12,9 @@ from pathlib import Path
 
 from ....loads.resolve import split
 from ....support.extras import needed
-from ....support.generated import Generated
 from ....support.shown import printable
 from ....support.version import version
-from ....support.written import require_path, sealed, write_whole
+from ....support.written import Generated, require_path, sealed, write_whole
 from ...content import Content
 from ...scene import Scene
 from ...schema import SceneError
