@@ -58,7 +58,7 @@ SLIDER = {
 }
 
 
-@pytest.mark.parametrize("kind", SLIDER)
+@pytest.mark.parametrize("kind", first(2, dict.fromkeys(["from the inner", "over Y", *SLIDER])))
 def test_a_load_that_follows_the_slider(kind, numbers_of, folder):
     """Values and total derivatives, either way; a design without the dead centre; the scene in mm."""
     load = SLIDER[kind](OUTWARD, INWARD)
@@ -120,14 +120,16 @@ JUMPS = {
 }
 
 
-@pytest.mark.parametrize("kind", JUMPS)
-@pytest.mark.parametrize("name", ["T_in", "N_C"])
-def test_a_peak_at_a_jump_is_its_one_sided_limit(kind, name, numbers_of, folder):
-    path = folder / f"jump_{list(JUMPS).index(kind)}_{name}.html"
-    page = numbers_of(dx.explore(names=["T_in", "N_C"], path=path, F_Y=JUMPS[kind], **PRESS))
-    top = f"((d) => desaxe.peakOf('{name}', d, desaxe.curve('{name}', d)))(desaxe.state.designs[0])"
-    exact = dx.peak(name, F_Y=JUMPS[kind], **PRESS)
-    assert abs(page.evaluate(top)["value"]) == pytest.approx(exact["value"], rel=1e-7)
+@pytest.mark.parametrize(
+    "kind", first(3, dict.fromkeys(["four-stroke", "over the stroke", "either way", *JUMPS]))
+)
+def test_a_peak_at_a_jump_is_its_one_sided_limit(kind, numbers_of, folder):
+    path = folder / f"jump_{list(JUMPS).index(kind)}.html"
+    page = numbers_of(dx.explore(names=["T_in", "N_C"], path=path, F_Y=JUMPS[kind], overwrite=True, **PRESS))
+    for name in ("T_in", "N_C"):
+        top = f"((d) => desaxe.peakOf('{name}', d, desaxe.curve('{name}', d)))(desaxe.state.designs[0])"
+        exact = dx.peak(name, F_Y=JUMPS[kind], **PRESS)
+        assert abs(page.evaluate(top)["value"]) == pytest.approx(exact["value"], rel=1e-7)
 
 
 def test_a_function_is_refused(folder):
