@@ -39,7 +39,7 @@ def test_peaks_in_a_store(tmp_path):
 def test_a_derivative_of_a_peak_and_a_peak_of_a_derivative_do_not_share_a_name():
     inputs = {"ec": [0.01, 0.02], "AB": 0.05, "BC": 0.2, "omega0": 30.0, "m_slider": 2.0}
     with pytest.raises(
-        ValueError, match="peak_max_T_in_wrt_ec would be that of T_in and that of T_in_wrt_ec"
+        ValueError, match="peak_max_T_in_wrt_ec would be two variables"
     ):
         dx.sweep([], store=None, peaks={"T_in": "max", "T_in_wrt_ec": "max"}, **inputs)
     result = dx.sweep([], store=None, peaks={"T_in": "max", "T_in_wrt_ec": "min"}, **inputs)

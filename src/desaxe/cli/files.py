@@ -115,7 +115,6 @@ def _sweep(options: argparse.Namespace) -> int:
     from ..scenes.stores.files import write
     from ..support.memory import require
     from ..support.written import require_path
-    from ..sweeps.request import RunOptions
     from ..sweeps.sweep import VersionError
 
     content = scene(options.scene).content
@@ -129,8 +128,8 @@ def _sweep(options: argparse.Namespace) -> int:
     chunks = _chunks(options.chunks)
     try:
         with _client(options) as client:
-            run = RunOptions(options.store, options.overwrite, client, tell=print)
-            dataset = sweep_content(content, run, chunks=chunks, memory=options.memory)
+            run = {"store": options.store, "overwrite": options.overwrite, "client": client}
+            dataset = sweep_content(content, chunks=chunks, memory=options.memory, tell=print, **run)
     except VersionError as error:
         raise UsageError(str(error)) from None
     shape = " x ".join(f"{name} ({size})" for name, size in dataset.sizes.items())

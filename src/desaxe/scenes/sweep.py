@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ..mechanism.keywords import with_known_keywords
 from ..mechanism.own import using
 from ..support.progress import Progress
-from ..sweeps.request import RunOptions, SweepRequest
+from ..sweeps.request import SweepRequest
 from ..sweeps.sweep import run_sweep
 from .parts.grid import sweep_content
 from .scene import Scene
@@ -70,15 +70,15 @@ def sweep(
     See docs/choose.md: which call for which question.
     """
     tell = _tell if progress is None and sys.stderr.isatty() else None
-    options = RunOptions(store, overwrite, client, progress, tell)
+    run = {"store": store, "overwrite": overwrite, "client": client, "watch": progress, "tell": tell}
     if isinstance(names, (Scene, Mapping, PathLike)) or (isinstance(names, str) and names.endswith(".toml")):
         if inputs or reduce is not None or peaks:
             raise TypeError("sweep: a scene has its own inputs, [reduce] and [[peak]]; give none beside it")
         there = names if isinstance(names, Scene) else scene_of(names)
         with using(there.content.definitions):
-            return sweep_content(there.content, options, chunks=chunks, threads=threads, memory=memory)
+            return sweep_content(there.content, chunks=chunks, threads=threads, memory=memory, **run)
     request = SweepRequest(names, inputs, branch, accuracy, threads, reduce, peaks, chunks, memory)
-    return run_sweep(request, options)
+    return run_sweep(request._replace(**run))
 
 
 def _tell(line: str) -> None:

@@ -16,7 +16,7 @@ from ..evaluation.points import Outer, outer_of
 from ..evaluation.reductions.argument import Reductions, names_reduced, reductions_of
 from ..mechanism.program import digest
 from ..runtime.request import accuracy_of, several
-from ..support.memory import size_text
+from ..support.memory import bytes_of, size_text
 from ..support.progress import Progress
 from ..support.shown import shown
 from ..support.version import version as desaxe_version
@@ -35,7 +35,7 @@ WRITING = 3 * 8  # bytes a point while an array is written: copied, compressed, 
 
 
 class SweepRequest(NamedTuple):
-    """The request of a sweep: names and inputs, and how they are computed, cut and reduced."""
+    """The request of a sweep: names and inputs; how they are computed, cut and reduced; where they go."""
 
     names: str | Sequence[str]
     inputs: Mapping[str, Any]
@@ -45,15 +45,10 @@ class SweepRequest(NamedTuple):
     reduce: Any = None
     peaks: Any = ()
     chunks: Any = "auto"
-    memory: Any = None  # bytes; as a text in a request that is not run yet
-
-
-class RunOptions(NamedTuple):
-    """The options of a run: the store, a Dask client, callbacks."""
-
+    memory: Any = None  # bytes, or a text
     store: str | PathLike[str] | None = None
     overwrite: bool = False
-    client: Any = None
+    client: Any = None  # of Dask
     watch: Progress | None = None
     tell: Callable[[str], None] | None = None
 
@@ -62,37 +57,98 @@ class Sweep(NamedTuple):
     """A sweep that is ready to run.
 
     plan      what it computes
-    layout    its dimensions and chunks
+    chunk     the length of its chunks along each dimension of the store
+    memory    bytes that the chunks in flight may take
     template  its Dataset with lazy variables, for names, dimensions and attributes
     identity  the attributes that tell whether a store is of the same sweep
     """
 
     plan: Plan
-    layout: "Layout"
+    chunk: dict[str, int]
+    memory: int | None
     template: "xr.Dataset"
     identity: dict[str, str]
+
+    @property
+    def chunks(self) -> int:
+        """The number of chunks of a variable over all dimensions."""
+        return prod(-(-size // self.chunk[name]) for name, size in self.plan.sizes.items())
+
+    @property
+    def in_flight(self) -> int:
+        """Bytes of one chunk while it is computed and written."""
+        return _bytes_a_point(self.plan) * prod(self.chunk.values())
+
+    @property
+    def at_once(self) -> int:
+        """The number of chunks in flight that fit into the memory, at least one."""
+        return max(1, min(self.chunks, (self.memory or DEFAULT_MEMORY) // self.in_flight))
+
+    @property
+    def shape(self) -> str:
+        """The shape of a chunk as text."""
+        return " x ".join(f"{length} {name}" for name, length in self.chunk.items()) or "one point"
+
+    def cut(self, chunk: Any) -> "Sweep":
+        """The sweep with the chunks of an existing store, from its attribute; ValueError for others."""
+        try:
+            lengths, sizes = json.loads(chunk), self.plan.sizes
+            if set(lengths) == set(sizes) and all(type(n) is int and n > 0 for n in lengths.values()):
+                return self._replace(chunk={name: lengths[name] for name in sizes})
+        except (ValueError, TypeError, AttributeError, RecursionError):
+            pass
+        raise ValueError(f"its chunks are {shown(chunk)}")
+
+    def require_memory(self) -> None:
+        """MemoryError where a chunk takes more memory than is allowed."""
+        if self.memory is not None and self.in_flight > self.memory:
+            raise MemoryError(
+                f"memory: a chunk of {self.shape} takes {size_text(self.in_flight)} while it is computed and "
+                f"written, {size_text(self.memory)} are allowed; give smaller chunks or more memory"
+            )
 
 
 def sweep_of(request: SweepRequest) -> Sweep:
     """The sweep of a request, checked; nothing is computed or written."""
-    names, branch, accuracy = request.names, request.branch, request.accuracy
-    if request.reduce is not None:
-        names = ((names,) if isinstance(names, str) else several(names)) + names_reduced(request.reduce)
-    outer = outer_of(names, request.inputs, branch, request.threads, always=request.reduce is None)
-    for name, size in outer.sizes.items():
-        if not size:
+    names, branch, accuracy, reduce = request.names, request.branch, request.accuracy, request.reduce
+    if reduce is not None:
+        names = ((names,) if isinstance(names, str) else several(names)) + names_reduced(reduce)
+    outer = outer_of(names, request.inputs, branch, request.threads, always=reduce is None)
+    for name in outer.dimensions:
+        if not outer.axes[name].size:
             raise ValueError(f"{name}: a sweep needs at least one value of it")
     checked = accuracy_of(accuracy)
-    reductions = (
-        None if request.reduce is None else reductions_of(request.reduce, outer.dimensions, outer.names)
-    )
+    reductions = None if reduce is None else reductions_of(reduce, outer.dimensions, outer.names)
     peaks = peak_requests(request.peaks, outer)
     plan = _plan_of(outer, branch, accuracy, reductions, peak_steps(peaks, outer, branch, accuracy))
-    outputs = ((step, output) for step in plan.all for output in step.outputs.values())
-    stored = sum(output.dtype.itemsize for step, output in outputs if len(step.dims) == len(plan.sizes))
-    behind = None if reductions is None else plan.behind
-    layout = layout_of(request.chunks, plan.sizes, stored, behind, request.memory)
-    return Sweep(plan, layout, plan.empty(), identity(plan, checked, peaks))
+    memory = bytes_of(request.memory)
+    points = _points_of_chunk(plan, memory)
+    chunk = uniform(chunk_lengths(request.chunks, plan.sizes, points))
+    sweep = Sweep(plan, chunk, memory, plan.empty(), identity(plan, checked, peaks))
+    few = memory is not None and points < FEWEST_POINTS
+    if request.chunks == "auto" and few and sweep.chunks > MOST_CHUNKS:
+        raise MemoryError(
+            f"memory: {size_text(memory or 0)} make {sweep.chunks} chunks of {points} points, a file each; "
+            'give more, such as "100 MB"'
+        )
+    return sweep
+
+
+def _bytes_a_point(plan: Plan) -> int:
+    """Bytes of a point of the store while it is computed and written."""
+    steps = (step for step in plan.all if len(step.dims) == len(plan.sizes))
+    stored = sum(output.dtype.itemsize for step in steps for output in step.outputs.values())
+    return stored + WRITING + 8 * len(plan.sizes)
+
+
+def _points_of_chunk(plan: Plan, memory: int | None) -> int:
+    """The points of a chunk of an automatic layout, from the request alone."""
+    per_point = _bytes_a_point(plan)
+    most = STORED if plan.reductions is None else max(1, REDUCED // max(plan.behind, 1))
+    points = min(most, (memory or DEFAULT_MEMORY) // (IN_FLIGHT * per_point))
+    if points < 1:
+        raise MemoryError(f"memory = {memory} bytes: a single point takes {IN_FLIGHT * per_point}")
+    return points
 
 
 def _plan_of(
@@ -102,27 +158,18 @@ def _plan_of(
     lost = [n for step in peaks for n in step.dims if reductions is not None and n in reductions.axes]
     if lost:
         raise ValueError(f"peaks: each is of one design, and {lost[0]} is reduced; sweep them by themselves")
-    _require_names_apart(peaks)
+    every = [name for step in peaks for name in step.outputs]
+    twice = next((name for name in every if every.count(name) > 1), None)
+    if twice is not None:  # of a peak and of a derivative of another one
+        raise ValueError(f"peaks: {twice} would be two variables; sweep them one by one")
     if not (outer.names or peaks):
         raise ValueError("sweep: nothing is requested, give names or peaks=")
     if outer.names:
         plan = plan_of(outer, branch, accuracy, reductions)
     else:
-        designs = tuple(outer.of([name for name in outer.axes if name != "theta"]))
-        plan = Plan(outer, branch, accuracy, (), designs)
+        plan = Plan(outer, branch, accuracy, (), tuple(name for name in outer.dimensions if name != "theta"))
     margin = () if outer.names and reductions is None else margin_of(outer, branch, accuracy, plan.dims)
     return plan._replace(beside=(*margin, *peaks))
-
-
-def _require_names_apart(peaks: Sequence[PeakStep]) -> None:
-    """ValueError for a name that is that of a peak and of a derivative of another one."""
-    known: dict[str, str] = {}
-    for step in peaks:
-        for name in step.outputs:
-            if name in known:
-                both = f"that of {known[name]} and that of {step.quantity}"
-                raise ValueError(f"peaks: {name} would be {both}; sweep them one by one")
-            known[name] = step.quantity
 
 
 def identity(plan: Plan, accuracy: str, peaks: Sequence[PeakRequest] = ()) -> dict[str, str]:
@@ -176,76 +223,3 @@ def _facts(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 def _text(value: Any) -> str:
     return "not given" if value is None else value if isinstance(value, str) else json.dumps(value)
-
-
-# ---- chunks ------------------------------------------------------------------------------------------
-
-
-class Layout(NamedTuple):
-    """The dimensions of a store, the length of its chunks, bytes a point in flight, and their limit."""
-
-    sizes: dict[str, int]
-    chunk: dict[str, int]
-    per_point: int
-    memory: int | None
-
-    @property
-    def chunks(self) -> int:
-        """The number of chunks of a variable over all dimensions."""
-        return prod(-(-size // self.chunk[name]) for name, size in self.sizes.items())
-
-    @property
-    def in_flight(self) -> int:
-        """Bytes of one chunk while it is computed and written."""
-        return self.per_point * prod(self.chunk.values())
-
-    @property
-    def at_once(self) -> int:
-        """The number of chunks in flight that fit into the memory, at least one."""
-        return max(1, min(self.chunks, (self.memory or DEFAULT_MEMORY) // self.in_flight))
-
-    @property
-    def shape(self) -> str:
-        """The shape of a chunk as text."""
-        return " x ".join(f"{length} {name}" for name, length in self.chunk.items()) or "one point"
-
-    def cut(self, chunk: Any) -> "Layout":
-        """The layout with the chunks of an existing store, from its attribute; ValueError for others."""
-        try:
-            lengths = json.loads(chunk)
-            if set(lengths) == set(self.sizes) and all(type(n) is int and n > 0 for n in lengths.values()):
-                return self._replace(chunk={name: lengths[name] for name in self.sizes})
-        except (ValueError, TypeError, AttributeError, RecursionError):
-            pass
-        raise ValueError(f"its chunks are {shown(chunk)}")
-
-    def require_memory(self) -> None:
-        """MemoryError where a chunk takes more memory than is allowed."""
-        if self.memory is not None and self.in_flight > self.memory:
-            raise MemoryError(
-                f"memory: a chunk of {self.shape} takes {size_text(self.in_flight)} while it is computed and "
-                f"written, {size_text(self.memory)} are allowed; give smaller chunks or more memory"
-            )
-
-
-def layout_of(
-    chunks: Any, sizes: Mapping[str, int], stored: int, behind: int | None, memory: int | None
-) -> Layout:
-    """The layout of a sweep, from the request alone.
-
-    sizes   the dimensions of the store
-    stored  bytes that are stored for each of its points
-    behind  points of the reduced axes behind each of them, None where nothing is reduced
-    """
-    per_point = stored + WRITING + 8 * len(sizes)
-    most = STORED if behind is None else max(1, REDUCED // max(behind, 1))
-    points = min(most, (memory or DEFAULT_MEMORY) // (IN_FLIGHT * per_point))
-    if points < 1:
-        raise MemoryError(f"memory = {memory} bytes: a single point takes {IN_FLIGHT * per_point}")
-    layout = Layout(dict(sizes), uniform(chunk_lengths(chunks, sizes, points)), per_point, memory)
-    if chunks == "auto" and memory is not None and layout.chunks > MOST_CHUNKS and points < FEWEST_POINTS:
-        raise MemoryError(
-            f"memory: {size_text(memory)} make {layout.chunks} chunks of {points} points, a file each; "
-            'give more, such as "100 MB"'
-        )
-    return layout

@@ -17,11 +17,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.labels import import_xarray
 from ..evaluation.plan import Part
 from ..support.extras import explained
 from ..support.files import kind_of, locked, remove_strays, require_writable, staging, swap_in
-from ..support.forks import IMPORTS
 from ..support.memory import size_text
 from ..support.shown import printable
 from ..support.signals import put_off
@@ -64,7 +62,7 @@ def put_group(root: Path, name: str, part: "xr.Dataset") -> None:
 
 def _write_skeleton(sweep: Sweep, store: Any) -> None:
     """Write all of a store but the chunks that the sweep computes."""
-    template, chunk = sweep.template, sweep.layout.chunk
+    template, chunk = sweep.template, sweep.chunk
     encoding = {
         str(name): {
             "chunks": tuple(chunk[str(dim)] if name not in template.coords else max(1, template.sizes[dim])
@@ -122,7 +120,7 @@ def checked(sweep: Sweep, root: Path, overwrite: bool) -> Sweep | None:
     else:
         try:
             resumed = _resumed(sweep, root, there)
-            if not overwrite or resumed.layout == sweep.layout:
+            if not overwrite or resumed.chunk == sweep.chunk:
                 return resumed
         except DAMAGED as error:
             if not overwrite:
@@ -130,7 +128,7 @@ def checked(sweep: Sweep, root: Path, overwrite: bool) -> Sweep | None:
                 raise FileExistsError(
                     f"{printable(root)}: {why}. --overwrite (overwrite=True) replaces it"
                 ) from None
-    sweep.layout.require_memory()
+    sweep.require_memory()
     require_disk(sweep, root, sweep.plan.bytes)
     return None
 
@@ -140,7 +138,7 @@ def _resumed(sweep: Sweep, root: Path, there: Mapping[str, Any]) -> Sweep:
     other = differences(there, sweep.identity) if "request" in there else ["no sweep wrote it"]
     if other:
         raise ValueError(f"a store of another sweep: {_several(other)}")
-    resumed = sweep._replace(layout=sweep.layout.cut(there.get(CHUNKS)))
+    resumed = sweep.cut(there.get(CHUNKS))
     changed = _changed(resumed, root)
     if changed:
         raise ValueError(f"changed since a sweep wrote it: {_several(changed)}")
@@ -215,16 +213,6 @@ def free_at(root: Path) -> int:
     return shutil.disk_usage(next(path for path in root.parents if path.exists())).free
 
 
-def open_store(root: Path) -> "xr.Dataset":
-    """The Dataset of a store, its variables as lazy Dask arrays."""
-    import_xarray()
-    with IMPORTS:
-        import xarray
-
-    dataset: xr.Dataset = xarray.open_zarr(root)
-    return dataset
-
-
 # ---- chunks --------------------------------------------------------------------------------------
 
 
@@ -232,7 +220,7 @@ def absent(sweep: Sweep, root: Path) -> int:
     """The number of chunks that are not in the store; an existing one may still be damaged."""
     return sum(
         any(not _chunk(root, name, part).is_file() for part in block.parts for name in part.step.outputs)
-        for block in sweep.plan.blocks(sweep.layout.chunk)
+        for block in sweep.plan.blocks(sweep.chunk)
     )
 
 

@@ -7,10 +7,11 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, ThreadPoolExecutor, wait
 from contextlib import nullcontext
+from functools import partial
 from importlib import import_module
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,12 +21,13 @@ from ..mechanism.program import digest
 from ..runtime.threads import available
 from ..support.extras import needed
 from ..support.files import as_path
-from ..support.memory import bytes_of, size_text
+from ..support.forks import IMPORTS
+from ..support.memory import size_text
 from ..support.progress import Portions, progress_bar
 from ..support.shown import printable
 from ..support.version import version as desaxe_version
-from .request import RunOptions, Sweep, SweepRequest, sweep_of
-from .store import absent, claimed, finish, free_at, is_whole, open_store, require_disk, write_chunk
+from .request import Sweep, SweepRequest, sweep_of
+from .store import absent, claimed, finish, free_at, is_whole, require_disk, write_chunk
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,73 +37,75 @@ R = TypeVar("R")
 Arrays = list[tuple[tuple[slice, ...], dict[str, NDArray[Any]]]]  # the region of each, and those in it
 
 
-def run_sweep(request: SweepRequest, options: RunOptions) -> "xr.Dataset":
+def run_sweep(request: SweepRequest) -> "xr.Dataset":
     """The body of `desaxe.sweep`."""
     for module in ("xarray", "dask", "zarr"):
         with needed("sweep", "scale"):
             import_module(module)
-    request = request._replace(memory=bytes_of(request.memory))
-    if options.client is not None:
-        require_workers(options.client)
-    if options.store is not None:
-        root = Path(os.path.abspath(as_path("store", options.store)))
-        return _stored(sweep_of(request), root, request.threads, options)
+    if request.client is not None:
+        require_workers(request.client)
+    if request.store is not None:
+        root = Path(os.path.abspath(as_path("store", request.store)))
+        return _stored(sweep_of(request), root, request)
     if request.reduce is None and (request.names or not request.peaks):
         raise TypeError('sweep: store= is missing: where the grid goes, such as "press.zarr"')
-    return _in_memory(sweep_of(request), request.threads, options)
+    return _in_memory(sweep_of(request), request)
 
 
-def _stored(sweep: Sweep, root: Path, threads: int | None, options: RunOptions) -> "xr.Dataset":
+def _stored(sweep: Sweep, root: Path, request: SweepRequest) -> "xr.Dataset":
     """Run a sweep into a store, or resume one that was stopped; the opened Dataset."""
-    with claimed(sweep, root, options.overwrite) as sweep:
-        layout, total = sweep.layout, sweep.layout.chunks
+    with claimed(sweep, root, request.overwrite) as sweep:
+        plan, total = sweep.plan, sweep.chunks
         left = absent(sweep, root)
         if left:
-            layout.require_memory()
-            require_disk(sweep, root, -(-sweep.plan.bytes * left // total))
-            if options.tell is not None:
-                plan = sweep.plan
+            sweep.require_memory()
+            require_disk(sweep, root, -(-plan.bytes * left // total))
+            if request.tell is not None:
                 variables = f"{len(sweep.template.data_vars)} variables, at most {size_text(plan.bytes)}"
-                chunks = f"{total:,} chunks of {layout.shape}; {size_text(free_at(root))} free"
-                options.tell(f"{plan.points:,} points, {variables} in {chunks}")
+                chunks = f"{total:,} chunks of {sweep.shape}; {size_text(free_at(root))} free"
+                request.tell(f"{plan.points:,} points, {variables} in {chunks}")
         try:
-            for _ in _run(sweep, root, threads, options):
+            for _ in _run(sweep, root, request):
                 pass
         except KeyboardInterrupt as stopped:
             kept = f"{total - absent(sweep, root):,} of {total:,} chunks are kept"
             stopped.args = (f"{printable(root)}: {kept}; the same sweep goes on from there",)
             raise
         finish(root)
-    return open_store(root)
+    with IMPORTS:
+        import xarray
+
+    dataset: xr.Dataset = xarray.open_zarr(root)
+    return dataset
 
 
-def _in_memory(sweep: Sweep, threads: int | None, options: RunOptions) -> "xr.Dataset":
+def _in_memory(sweep: Sweep, request: SweepRequest) -> "xr.Dataset":
     """Run a sweep whose result fits into memory, a reduced one; its Dataset."""
     template = sweep.template
     whole = {str(n): np.empty(v.shape, v.dtype) for n, v in template.data_vars.items()}
-    sweep.layout.require_memory()
-    for arrays in _run(sweep, None, threads, options):
+    sweep.require_memory()
+    for arrays in _run(sweep, None, request):
         for region, values in arrays:
             for name, array in values.items():
                 whole[name][region] = array
     return template.assign({n: template[n].copy(data=array) for n, array in whole.items()})
 
 
-def _run(sweep: Sweep, root: Path | None, threads: int | None, options: RunOptions) -> Iterator[Arrays]:
+def _run(sweep: Sweep, root: Path | None, request: SweepRequest) -> Iterator[Arrays]:
     """Compute the chunks that a store lacks, or all of them; the arrays of each as they come, counted."""
     executor: Executor
-    if options.client is not None:
-        executor, each = options.client.get_executor(pure=False), 1
-        size = max(1, sum(options.client.nthreads().values()))
+    if request.client is not None:
+        executor, each = request.client.get_executor(pure=False), 1
+        size = max(1, sum(request.client.nthreads().values()))
     else:
-        cores = threads or available()
-        size = min(cores, sweep.layout.at_once)
+        cores = request.threads or available()
+        size = min(cores, sweep.at_once)
         executor, each = ThreadPoolExecutor(size, thread_name_prefix="desaxe-sweep"), max(1, cores // size)
-    work = BlockWork(root, each, sweep.identity["version"], sweep.identity["digest"])
-    shown = progress_bar(unit="points") if options.watch is None else nullcontext(options.watch)
+    work = partial(compute_block, root, each, sweep.identity)
+    shown = progress_bar(unit="points") if request.watch is None else nullcontext(request.watch)
     with shown as watch, executor:
         portions = Portions(sweep.plan.points, "sweep", watch)
-        for block, arrays in run_all(executor, work.run, sweep.plan.blocks(sweep.layout.chunk), 2 * size):
+        for block, arrays in run_all(executor, work, sweep.plan.blocks(sweep.chunk), 2 * size):
             portions.add(sweep.plan.points_in(block), arrays is not None)
             yield arrays or []
 
@@ -113,29 +117,21 @@ class VersionError(RuntimeError):
     """A worker has another desaxe than the one that sent it work."""
 
 
-class BlockWork(NamedTuple):
-    """The work on a block, written to the store `root`, or returned to the caller where that is None."""
-
-    root: Path | None
-    threads: int
-    version: str
-    digest: str
-
-    def run(self, block: Block) -> Arrays | None:
-        """Compute the chunks of a block that the store lacks; None if it lacks none."""
-        check_version(self.version, self.digest)
-        back: Arrays | None = None
-        for part in block.parts:
-            missing = [n for n in part.step.outputs if self.root is None or not is_whole(self.root, n, part)]
-            if missing:
-                back = back or []
-                values = part.step.compute(block.values, self.threads)
-                if self.root is None:
-                    back.append((part.region, values))
-                    continue
-                for name in missing:
-                    write_chunk(self.root, name, part, values.pop(name))
-        return back
+def compute_block(root: Path | None, threads: int, identity: dict[str, str], block: Block) -> Arrays | None:
+    """Compute the chunks of a block that a store lacks, None if none; without a store return them."""
+    check_version(identity["version"], identity["digest"])
+    back: Arrays | None = None
+    for part in block.parts:
+        missing = [n for n in part.step.outputs if root is None or not is_whole(root, n, part)]
+        if missing:
+            back = back or []
+            values = part.step.compute(block.values, threads)
+            if root is None:
+                back.append((part.region, values))
+                continue
+            for name in missing:
+                write_chunk(root, name, part, values.pop(name))
+    return back
 
 
 def check_version(version: str, program: str) -> None:

@@ -136,9 +136,9 @@ def _sweep(content: Content, store: str) -> dict[str, Any]:
     folder = next(parent for parent in Path(store).absolute().parents if parent.exists())
     return {
         "store": store,
-        "chunks": sweep.layout.chunks,
-        "chunk": sweep.layout.chunk,
-        "memory": min(content.threads or available(), sweep.layout.at_once) * sweep.layout.in_flight,
+        "chunks": sweep.chunks,
+        "chunk": sweep.chunk,
+        "memory": min(content.threads or available(), sweep.at_once) * sweep.in_flight,
         "disk": sweep.plan.bytes,
         "free": shutil.disk_usage(folder).free,
     }

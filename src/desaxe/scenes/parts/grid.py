@@ -14,7 +14,7 @@ from ...mechanism.quantity_units import UnitSystem
 from ...support.forks import IMPORTS
 from ...support.shown import printed
 from ...sweeps.peak_step import PeakRequest
-from ...sweeps.request import RunOptions, SweepRequest, sweep_of
+from ...sweeps.request import SweepRequest, sweep_of
 from ..content import Content, RequestAnswer, RequestPlan, Sink
 from ..document.blocks import Block, Section, Text, TextTable, cell
 from ..reading.values import Value
@@ -43,8 +43,8 @@ class Grid:
     def _stored(self, content: Content, sink: Sink) -> "GridAnswer":
         sink.steps.next(f"sweeping into {content.store}")
         # The steps of the run are reported, not the points of the sweep.
-        options = RunOptions(overwrite=sink.overwrite, watch=lambda done, total, what: None)
-        return GridAnswer(dataset=sweep_content(content, options), content=content)
+        dataset = sweep_content(content, overwrite=sink.overwrite, watch=lambda done, total, what: None)
+        return GridAnswer(dataset=dataset, content=content)
 
     def _answer(self, content: Content, sink: Sink) -> "GridAnswer":
         plan = plan_of_grid(content)
@@ -130,6 +130,7 @@ def request_of(content: Content) -> SweepRequest:
     return SweepRequest(
         list(content.outputs), arrays_of(inputs), content.branch, content.accuracy, content.threads,
         content.reduction, peaks, "auto" if content.chunks is None else content.chunks, content.memory,
+        content.store,
     )  # fmt: skip
 
 
@@ -141,15 +142,12 @@ def require_store(content: Content, overwrite: bool) -> None:
     checked(sweep_of(request_of(content)), Path(content.store or "").absolute(), overwrite)
 
 
-def sweep_content(
-    content: Content, options: RunOptions, *, chunks: Any = "auto", **request: Any
-) -> "xr.Dataset":
+def sweep_content(content: Content, *, chunks: Any = "auto", **request: Any) -> "xr.Dataset":
     """Run the sweep of a scene; what is not given comes from the scene."""
     with IMPORTS:  # Zarr, which scenes without a store do without
         from ...sweeps.sweep import run_sweep
 
     if not (isinstance(chunks, str) and chunks == "auto"):
         request["chunks"] = chunks
-    given = {name: value for name, value in request.items() if value is not None}
-    store = content.store if options.store is None else options.store
-    return run_sweep(request_of(content)._replace(**given), options._replace(store=store))
+    more = {name: value for name, value in request.items() if value is not None}
+    return run_sweep(request_of(content)._replace(**more))
