@@ -38,9 +38,7 @@ def test_peaks_in_a_store(tmp_path):
 
 def test_a_derivative_of_a_peak_and_a_peak_of_a_derivative_do_not_share_a_name():
     inputs = {"ec": [0.01, 0.02], "AB": 0.05, "BC": 0.2, "omega0": 30.0, "m_slider": 2.0}
-    with pytest.raises(
-        ValueError, match="peak_max_T_in_wrt_ec would be two variables"
-    ):
+    with pytest.raises(ValueError, match="peak_max_T_in_wrt_ec would be two variables"):
         dx.sweep([], store=None, peaks={"T_in": "max", "T_in_wrt_ec": "max"}, **inputs)
     result = dx.sweep([], store=None, peaks={"T_in": "max", "T_in_wrt_ec": "min"}, **inputs)
     assert float(result.peak_max_T_in_wrt_ec[0]) != float(result.peak_min_T_in_wrt_ec[0])
