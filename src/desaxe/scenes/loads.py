@@ -75,6 +75,11 @@ MOTORS = {
 }  # fmt: skip
 
 
+def kind_of(load: Any) -> tuple[str, LoadKind | None]:
+    """The key and the row of a load that is data; None for any other."""
+    return next(((name, kind) for name, kind in KINDS.items() if kind.made is type(load)), ("", None))
+
+
 def without_objects(data: Mapping[str, Any]) -> dict[str, Any]:
     """The data of a scene with each Load or Motor object replaced by a number, for the schema."""
     return {

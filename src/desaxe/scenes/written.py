@@ -13,7 +13,7 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.quantity_units import SI, UnitSystem
 from ..support.shown import with_unit
 from ..units.system import Conversion
-from .loads import KINDS, WAYS
+from .loads import WAYS, kind_of
 from .schema import SceneError
 
 INLINE = 24  # points of a load that stand in the scene itself
@@ -63,7 +63,7 @@ def load_table(name: str, load: Load, units: UnitSystem, path: Path | None, text
         terms = [(factor, load_table(name, part, units, path, texts)) for factor, part in load.terms]
         parts: list[Any] = [part if factor == 1.0 else {**part, "scale": factor} for factor, part in terms]
         return [*parts, *([f"{load.constant!r} N"] if load.constant else [])]
-    over, kind = next(((n, one) for n, one in KINDS.items() if one.made is type(load)), ("", None))
+    over, kind = kind_of(load)
     if kind is None:
         raise TypeError(
             f"{name}: {load!r} is not data, and cannot stand in a scene file; give tables, "

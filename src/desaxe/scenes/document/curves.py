@@ -71,7 +71,6 @@ def _of_outputs(dataset: "xr.Dataset") -> list[Block]:
 def _picture(dataset: "xr.Dataset", dims: tuple[str, ...], names: list[str]) -> list[Block]:
     """Quantities over theta, a few curves of each; of further axes the first value."""
     with IMPORTS:
-        from ...plot import curves as draw_curves
         from ...plot import panels
 
     over = "theta" if "theta" in dims else dims[0]
@@ -85,8 +84,5 @@ def _picture(dataset: "xr.Dataset", dims: tuple[str, ...], names: list[str]) -> 
     if family is not None and dataset.sizes[family] > CURVES:
         left.append(f"{CURVES} of {dataset.sizes[family]} values of {family}")
     words = f"{', '.join(names)} over {over}" + (f"; {', '.join(left)}" if left else "")
-    if len(names) == 1:
-        picture = draw_curves(part, names[0], over=over, family=family)
-    else:
-        picture = panels(part, names, over=over, family=family)
+    picture = panels(part, names, over=over, family=family)
     return [image_of(picture.figure, words), *([Text(words)] if left else [])]

@@ -12,7 +12,7 @@ from ...design.feasibility.feasibility import feasibility
 from ...design.tolerance.tolerance import tolerance
 from ...evaluation.evaluate import evaluate
 from ...evaluation.in_units import in_units
-from ...loads.load import Load, OverY, TableOverTheta
+from ...loads.load import Load
 from ...loads.stroke import OverStroke
 from ...mechanism.catalogue import of_design
 from ...mechanism.closed import TURN
@@ -27,6 +27,7 @@ from ...support.forks import IMPORTS
 from ...support.shown import shown
 from ...units.text import with_unit_of
 from ..content import Content
+from ..loads import WAYS, kind_of
 from ..reading.values import Value
 from .blocks import (
     NONE,
@@ -115,22 +116,18 @@ def _value(name: str, value: Value, units: UnitSystem) -> tuple[str, str]:
 
 def _points(name: str, load: Value, units: UnitSystem) -> Iterator[Block]:
     """The points of a load that varies with the motion, where they are few."""
-    if isinstance(load, TableOverTheta):
-        over, tables = "theta", {name: load.table}
-    elif isinstance(load, OverY):
-        ways = {"outward": load.outward, "inward": load.inward or load.outward}
-        over, tables = load.over, {f"{name}, {way}": table for way, table in ways.items()}
-    else:
+    _, kind = kind_of(load)
+    if kind is None or kind.numbers or not isinstance(load, Load):
         return
-    knots = next(iter(tables.values())).knots
-    if len(knots) > POINTS or any(len(table.values) != len(knots) for table in tables.values()):
+    tables, along = load.tables, kind.along
+    knots = tables[0].knots
+    if len(knots) > POINTS or any(len(table.values) != len(knots) for table in tables):
         return
-    head = over
-    if isinstance(load, OverStroke):
-        head, over = f"distance from Y_{load.dead_centre}", "Y"
-    columns = [(over, knots), *((name, table.values) for table in tables.values())]
+    columns = [(along, knots), *((name, table.values) for table in tables)]
     cells = [[in_unit(units, n, value) for value in column] for n, column in columns]
-    heads = [f"{head} [{unit_of(units, over)}]", *(f"{n} [{unit_of(units, name)}]" for n in tables)]
+    head = f"distance from Y_{load.dead_centre}" if isinstance(load, OverStroke) else along
+    names = [name] if len(tables) == 1 else [f"{name}, {way}" for way in WAYS]
+    heads = [f"{head} [{unit_of(units, along)}]", *(f"{n} [{unit_of(units, name)}]" for n in names)]
     yield TextTable(heads, [*zip(*cells, strict=True)])
 
 

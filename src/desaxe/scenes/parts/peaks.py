@@ -65,13 +65,13 @@ class Peak:
 
     @property
     def designs(self) -> int:
-        """The number of designs, without those of baseline and claims."""
+        """The number of designs."""
         return prod(len(values) for values in self.axes.values())
 
     @property
     def batches(self) -> int:
         """The number of batches in which they are searched."""
-        return -(-(self.designs + len(self.claims) + bool(self.baseline)) // DESIGNS)
+        return -(-self.designs // DESIGNS)
 
     @property
     def group(self) -> str:
@@ -198,23 +198,21 @@ def _other_design(
 
 
 def _answer(one: Peak, content: Content, sink: Sink) -> PeakResult:
-    """The peaks of designs, baseline and claims, searched together."""
-    others = [*([one.baseline] if one.baseline else []), *(claim.design for claim in one.claims)]
-    columns = {
-        name: np.append(column, [design[name] for design in others])
-        for name, column in columns_of({**one.axes, **one.fixed}).items()
-    }
-    values = _searched(one, content, columns, sink)
-    shape, count = [len(axis) for axis in one.axes.values()], one.designs
-    arrays = {name: array[:count].reshape(shape) for name, array in values.items()}
+    """The peaks of all designs, then of the baseline and of each claim."""
+    columns: dict[str, Any] = columns_of({**one.axes, **one.fixed})
+    options: dict[str, Any] = {"branch": content.branch, "accuracy": content.accuracy, **one.loads}
+    values = _searched(one, columns, options, sink)
+    shape = [len(axis) for axis in one.axes.values()]
+    arrays = {name: array.reshape(shape) for name, array in values.items()}
     claims: list[ClaimResult] = []
     if one.baseline:
-        base, *claimed = values["value"][count:].tolist()
+        designs = [one.baseline, *(claim.design for claim in one.claims)]
+        base, *claimed = (_peak(one, **design, **options)["value"] for design in designs)
         arrays["increase"] = _increase(arrays["value"], base)
         for claim, value in zip(one.claims, claimed, strict=True):
             computed = float(_increase(value, base))
             claims.append(ClaimResult(claim, computed, claim.increase.agrees(computed)))
-    mirrored = _mirrored(one, content, columns, values)[:count].reshape(shape)
+    mirrored = _mirrored(one, {**columns, **options}, values).reshape(shape)
     known = quantity(one.quantity, one.state)
     words = f"{WORDS[one.kind]} of {one.quantity}, {known.meaning}"
     attributes = {
@@ -231,17 +229,20 @@ def _answer(one: Peak, content: Content, sink: Sink) -> PeakResult:
     return PeakResult(peak=one, dataset=dataset, claims=tuple(claims), mirrored=mirrored)
 
 
+def _peak(one: Peak, **design: Any) -> Any:
+    """The peak of one design or of several."""
+    return peak(one.quantity, kind=one.kind, theta=one.theta, **design)
+
+
 def _searched(
-    one: Peak, content: Content, columns: Mapping[str, NDArray[np.float64]], sink: Sink
+    one: Peak, columns: Mapping[str, Any], options: Mapping[str, Any], sink: Sink
 ) -> dict[str, NDArray[Any]]:
     """Value, angle, status and gradient of flat designs, batch by batch."""
-    size = next(iter(columns.values())).size
-    options: dict[str, Any] = {"branch": content.branch, "accuracy": content.accuracy, **one.loads}
     batches = []
-    for start in range(0, size, DESIGNS):
+    for start in range(0, one.designs, DESIGNS):
         sink.steps.next(f"peaks of {one.quantity}")
-        batch: dict[str, Any] = {name: column[start : start + DESIGNS] for name, column in columns.items()}
-        result = peak(one.quantity, kind=one.kind, theta=one.theta, **batch, **options)
+        batch = {name: column[start : start + DESIGNS] for name, column in columns.items()}
+        result = _peak(one, **batch, **options)
         gradient = result.pop("gradient")
         for name in one.sensitivities:  # by what has no effect, such as F_X without friction
             gradient.setdefault(name, np.where(np.isfinite(result["value"]), 0.0, np.nan))
@@ -249,17 +250,14 @@ def _searched(
     return {name: np.concatenate([batch[name] for batch in batches]) for name in batches[0]}
 
 
-def _mirrored(
-    one: Peak, content: Content, columns: Mapping[str, NDArray[np.float64]], values: Mapping[str, Any]
-) -> NDArray[np.bool_]:
+def _mirrored(one: Peak, design: dict[str, Any], values: Mapping[str, Any]) -> NDArray[np.bool_]:
     """Designs with ec = 0 whose peak is shared by theta and -theta: a kink in its course over ec."""
     theta = values["theta"]
     low, high = one.theta
-    if "ec" not in columns or high - low < 2.0 * pi - 1e-9:
+    if "ec" not in design or high - low < 2.0 * pi - 1e-9:
         return np.zeros(theta.shape, np.bool_)
-    steady = columns["alpha"] == 0.0 if "alpha" in columns else True
-    usable = (columns["ec"] == 0.0) & (values["status"] == 0) & (np.abs(np.sin(theta)) > 1e-6) & steady
-    design: dict[str, Any] = {**columns, **one.loads, "branch": content.branch, "accuracy": content.accuracy}
+    usable = (design["ec"] == 0.0) & (values["status"] == 0) & (np.abs(np.sin(theta)) > 1e-6)
+    usable &= design.get("alpha", 0.0) == 0.0
     there: Any = evaluate(one.quantity, theta=-theta, **design)
     there = np.abs(there) if one.kind == "absmax" else there
     shared: NDArray[np.bool_] = usable & (np.abs(there - values["value"]) <= 1e-9 * np.abs(values["value"]))
