@@ -194,15 +194,6 @@ def test_compile(tmp_path, message):
     assert place.stat().st_mode == (tmp_path / "new").stat().st_mode
 
 
-def test_run(tmp_path, monkeypatch, message):
-    monkeypatch.chdir(tmp_path)
-    out = message("run", COMPACTOR)
-    for text in ("29.5 rad/s", "-20.2 m/s", "-7740 rad/s2", "-994 m/s2"):
-        assert out.count(text) == 2
-    assert "Written\n  out/compactor.nc" in out.replace(os.sep, "/")
-    assert (tmp_path / "out" / "compactor.nc").exists()
-
-
 @pytest.mark.parametrize("command", [(), *((name,) for name in COMMANDS)])
 def test_help(command, message):
     out = message(*command, "--help")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
+from tests.effort import first
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -55,12 +56,12 @@ def test_feeder_writes_its_files(feeder):
     assert text.isascii()
 
 
-@pytest.mark.parametrize(("paper", "first", "last"), [("a", 9, 12), ("b", 5, 18), ("c", 5, 11)])
-def test_figures_of_the_papers(paper, first, last, tmp_path, capsys):
+@pytest.mark.parametrize(("paper", "low", "high"), first(1, [("a", 9, 12), ("b", 5, 18), ("c", 5, 11)]))
+def test_figures_of_the_papers(paper, low, high, tmp_path, capsys):
     script = runpy.run_path(str(EXAMPLES / f"paper_{paper}.py"))
     script["main"](str(tmp_path / "new"))
     lines = capsys.readouterr().out.splitlines()
-    names = [f"paper_{paper}_{number:02}.png" for number in range(first, last + 1)]
+    names = [f"paper_{paper}_{number:02}.png" for number in range(low, high + 1)]
     assert sorted(path.name for path in (tmp_path / "new").iterdir()) == names
     assert [Path(line.partition(" - ")[0]).name for line in lines] == names
 
