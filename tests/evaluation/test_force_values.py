@@ -7,6 +7,7 @@ inputs: a force is a sum of what masses, loads and motion cause, which may nearl
 import math
 import random
 from functools import partial
+from itertools import product
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ from desaxe.oracle.force_truth import (
     force_names,
     truth_all,
 )
-from tests.effort import cases
+from tests.effort import cases, first
 from tests.evaluation import test_values as values_of
 from tests.points import draw
 
@@ -63,9 +64,12 @@ GEOMETRIES = ("generic", "branch -1", "long crank", "concentric", "backwards", "
 STATES = ("state", "state at rest", "state that starts", "at rest", "from rest")
 
 
+PAIRS = {(name, KINDS[k % 4]): None for k, name in enumerate((*GEOMETRIES, *STATES))}  # then all others
+PAIRS |= dict.fromkeys(product((*GEOMETRIES, *STATES), KINDS))
+
+
 @pytest.mark.sampled
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("geometry", [*GEOMETRIES, *STATES])
+@pytest.mark.parametrize(("geometry", "kind"), first(len(GEOMETRIES) + len(STATES), PAIRS))
 def test_values_and_all_first_sensitivities(geometry, kind):
     for point in points(geometry, kind, cases(1, 5)):
         assert not misses(dx.evaluate(names_for(point), **point), point), point

@@ -1,7 +1,4 @@
-"""Labelled grids in the hands of someone used to xarray: selecting, units, flags, files, plots."""
-
-import subprocess
-import sys
+"""Labelled grids in the hands of someone used to xarray: selecting, units, flags, files."""
 
 import cf_xarray  # noqa: F401  the accessor .cf
 import numpy as np
@@ -201,30 +198,3 @@ def test_series_of_different_rows_are_not_paired_by_position():
     np.testing.assert_array_equal(together, dx.evaluate("a_C", theta=theta.values, ec=ec.values, **MACHINE))
     with pytest.raises(ValueError, match=r"theta and ec: Series of different index; align them"):
         dx.evaluate("a_C", theta=theta, ec=ec[::-1], **MACHINE)
-
-
-# ---- plots that xarray and hvplot make ----------------------------------------------------------------
-
-
-def test_xarray_plots(grid):
-    from matplotlib.figure import Figure
-
-    axes = Figure().add_subplot()
-    grid.a_C.plot.line(x="theta", ax=axes)
-    assert axes.get_xlabel().startswith("crank angle")
-    assert axes.get_ylabel().replace("\n", " ") == "acceleration of the slider [m/s^2]"
-
-
-@pytest.mark.thorough
-def test_hvplot():
-    """In a process of its own: its imports warn of each other."""
-    code = """
-import numpy as np
-import hvplot.xarray
-import desaxe as dx
-grid = dx.grid("a_C", theta=np.linspace(0, 6, 9), ec=[0, 0.1], AB=0.125, BC=0.35, omega0=157.08)
-curves = grid.a_C.hvplot.line(x="theta", by="ec")
-print(type(curves).__name__, len(curves), curves.kdims[0].name)
-"""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["NdOverlay", "2", "ec"]

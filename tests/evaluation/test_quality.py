@@ -15,15 +15,15 @@ from desaxe.oracle.force_truth import FORCES, OTHERS
 from desaxe.oracle.force_truth import conditions as force_conditions
 from desaxe.oracle.force_truth import truth as force_truth
 from desaxe.oracle.truth import LAW, QUANTITIES, SECOND_ORDER, STATE, conditions, truth
-from tests.effort import cases
+from tests.effort import cases, first
 from tests.evaluation.test_force_values import points
 from tests.points import draw
 
 POINT = {"theta": 1.1, "ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": 157.0}
 PROMISE = 8 * 2.0**-52
 KINDS = (
-    "generic", "branch -1", "long crank", "very long crank", "concentric", "backwards", "steady", "from rest",
-    "slowing down", "state", "state that starts", "at rest",
+    "generic", "branch -1", "long crank", "slowing down", "state that starts", "very long crank",
+    "concentric", "backwards", "steady", "from rest", "state", "at rest",
 )  # fmt: skip
 
 
@@ -55,7 +55,7 @@ def near_the_change_point():
 
 
 @pytest.mark.sampled
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", first(5, KINDS))
 def test_the_bound_holds(kind):
     for point in draw(kind, cases(3, 8)):
         assert not too_small(dx.evaluate(names_for(point), **point, quality=True), point), point

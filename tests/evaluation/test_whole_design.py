@@ -5,6 +5,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.mechanism.names import LENGTHS, WHOLE
+from tests.effort import first
 
 DESIGN = {"ec": 0.02, "AB": 0.04, "BC": 0.064}
 ECS = np.array([-0.02, 0.0, 0.01, 0.024, 0.03, 0.2])
@@ -94,9 +95,9 @@ def test_what_is_made_of_a_stroke_hangs_on_the_sign_too():
 
 
 def test_a_grid_has_its_axes_in_the_order_given_whatever_name_comes_first():
-    for first in ("stroke", "margin", "V_C"):
+    for name in ("stroke", "margin", "V_C"):
         for chunks in (None, 2):
-            result = dx.grid([first, "V_C"], theta=[0.0, 1.0], ec=ECS, omega0=1.0, chunks=chunks, **LONG)
+            result = dx.grid([name, "V_C"], theta=[0.0, 1.0], ec=ECS, omega0=1.0, chunks=chunks, **LONG)
             assert list(result.sizes) == ["theta", "ec"]
 
 
@@ -123,7 +124,9 @@ def test_enclosures_hold_what_is_in_them():
         assert max(inside) - 1e-15 <= result["upper"]
 
 
-@pytest.mark.parametrize("name", ["stroke", "time_ratio", "Y_inner", "max_pressure_angle", "theta_inner"])
+@pytest.mark.parametrize(
+    "name", first(1, ["time_ratio", "stroke", "Y_inner", "max_pressure_angle", "theta_inner"])
+)
 def test_the_equation_has_the_value(name):
     for each in (name, f"{name}_wrt_AB"):
         for form in ("textbook", "stable"):

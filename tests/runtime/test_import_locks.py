@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import desaxe
+from tests.effort import first
 from tests.reliability.forks import FIRST_CALLS, START
 
 ROOT = Path(desaxe.__file__).parent
@@ -130,7 +131,7 @@ INTERRUPTED = [
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGALRM"), reason="alarms")
-@pytest.mark.parametrize(("call", "function", "file"), INTERRUPTED)
+@pytest.mark.parametrize(("call", "function", "file"), first(3, INTERRUPTED))
 def test_what_a_handler_raises_leaves_imports_finished(call, function, file):
     program = START + ALARMED.format(call=call, function=function, file=file)
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

@@ -96,8 +96,9 @@ def number_or_array(row: Input, value: Any) -> Array:
 
 
 def _not_wholly_bad(name: str, array: Array) -> Array:
-    first = array.item(0) if array.size else 1.0
-    if not (LEAST < first < MOST or is_good(name, first) or are_good(name, array).any()):
+    middle = array.item(array.size // 2) if array.size else 1.0
+    if not (LEAST < middle < MOST or is_good(name, middle) or are_good(name, array).any()):
+        first = array.item(0)
         message = amount(name, first) + f"; {limit_of(name, first)}"
         raise ValueError(f"{name}: every value is bad, the first is " + message)
     return array

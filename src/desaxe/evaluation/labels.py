@@ -62,6 +62,11 @@ def side_attributes() -> dict[str, Any]:
 
 def input_attributes(name: str) -> dict[str, str]:
     """CF attributes of an input."""
+    return {**_input_attributes(name)}
+
+
+@lru_cache(maxsize=256)
+def _input_attributes(name: str) -> dict[str, str]:
     row = INPUTS.get(name.partition("[")[0])  # that of one slider of several
     return {"units": str(unit_of(name)), "long_name": row.meaning if row else name}
 
