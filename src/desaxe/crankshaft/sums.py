@@ -15,6 +15,7 @@ import numpy as np
 from ..evaluation.evaluate import Values, evaluate
 from ..loads.resolve import split
 from ..mechanism.catalogue import has, quantity
+from ..mechanism.closed.limits import margins_of
 from ..mechanism.inputs import INPUTS, row_of
 from ..mechanism.names import LENGTHS, parts, sensitivity
 from ..mechanism.own import Definition, register, using
@@ -196,12 +197,20 @@ class SliderSums:
         return not any(bent) and not register().definitions
 
     def shared_lengths(self, inputs: Sequence[str]) -> dict[str, Any]:
-        """The lengths of the sliders; TypeError where these differ, and for inputs that there are none of."""
+        """The lengths that all sliders have; TypeError for inputs that there are none of."""
         self.replaced({name: 0.0 for name in inputs if name not in STATE})
-        rows = [{name: member.inputs.get(name) for name in LENGTHS} for member in self.members]
-        if any(row != rows[0] for row in rows):
-            raise TypeError("a search for inputs is of sliders with the same lengths")
-        return rows[0]
+        first, *others = (member.inputs for member in self.members)
+        return {n: first[n] for n in LENGTHS if all(row[n] == first[n] for row in others)}
+
+    def least_margin(self, side: float, inputs: Mapping[str, Any]) -> tuple[Any, dict[str, Any]]:
+        """The least BC - AB - side ec, with other inputs of the sliders, and its derivatives by lengths."""
+        here = self.replaced({n: v for n, v in inputs.items() if n not in (*STATE, "sliders")})
+        lengths = ([member.inputs[n] for n in LENGTHS] for member in here.members)
+        every = np.array(np.broadcast_arrays(*(margins_of(side * ec, *more)[0] for ec, *more in lengths)))
+        least, slopes = every.argmin(0), dict(zip(LENGTHS, (-side, -1.0, 1.0), strict=True))
+        rows = range(len(every))
+        by_one = {f"{n}[{k}]": np.where(least == k, s, 0.0) for k in rows for n, s in slopes.items()}
+        return every.min(0), {**{n: s + 0.0 * every[0] for n, s in slopes.items()}, **by_one}
 
     def numbers(self) -> dict[str, Any]:
         """The inputs that are numbers by name, of all sliders and of one, their angles, and loads."""

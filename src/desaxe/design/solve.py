@@ -8,7 +8,7 @@ import numpy as np
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs
 from ..mechanism.messages import amount
-from ..mechanism.names import WHOLE
+from ..mechanism.names import LENGTHS, WHOLE
 from ..mechanism.quantity_units import unit_of
 from ..mechanism.status import SolveStatus
 from ..runtime.request import check_common, check_sliders
@@ -46,7 +46,7 @@ def solve(
     over     dict of the input -> (low, high)
     where    dict of one measure, as in `optimize`, -> its value: {("absmax", "a_C"): 900.0}; a named one may
              be a keyword instead: stroke="50 mm", time_ratio=1.1, margin=...
-    sliders  filled in by a `Crankshaft` of one machine, for a peak, an average or a quantity at an angle
+    sliders  filled in by a `Crankshaft`, for a peak, an average or a quantity at an angle
     inputs   the others, as in `evaluate`, without theta
 
     Returns a dict:
@@ -123,9 +123,10 @@ def _sought(
 def _turning(space: Space, measure: Measure) -> tuple[float, float]:
     """The part of the range in which the crank turns fully; all of it for the margin."""
     name, low, high = space.names[0], float(space.low[0]), float(space.high[0])
-    if measure == "margin" or name not in ("ec", "AB", "BC"):
+    known = {**space.fixed, name: 0.0}
+    if measure == "margin" or name not in LENGTHS or not {*LENGTHS} <= {*known}:
         return low, high
-    ec, AB, BC = (space.fixed.get(length, 0.0) for length in ("ec", "AB", "BC"))
+    ec, AB, BC = (known[length] for length in LENGTHS)
     spare = INSIDE * (high - low)
     limits = {"AB": (low, BC - abs(ec)), "BC": (AB + abs(ec), high), "ec": (AB - BC, BC - AB)}
     least, most = limits[name]

@@ -56,7 +56,7 @@ def optimize(
     keep                dict of the same names -> (low, high), None where there is no limit, or ("==", value).
                         The crank always turns fully: margin >= 0
     fixed               all other parameters, as in `evaluate`; F_X and F_Y may vary with the motion
-    sliders             filled in by a `Crankshaft` of one machine, whose phases and banks may vary, too
+    sliders             filled in by a `Crankshaft`, whose phases and banks may vary, too
     starts, seed        how many local searches, from the best of a scan of the space
     timeout             seconds after which it ends with a TimeoutError; None for no limit
     points              designs along a Pareto front (to the power of the objectives less one)
@@ -115,7 +115,7 @@ def solved(goal: Goal, space: Space, limits: list[Limit], starts: int, seed: int
     none = none_turns(space, limits)
     if none is not None:
         return none
-    rod = space.fixed.get("BC") or float(space.high[space.names.index("BC")])
+    rod = space.rod
     own = any(c.key == "margin" and c.side != UPPER and c.bound > EDGES[-1] * rod for c in limits)
     history: list[tuple[float, float]] = []
     places: list[Array] = []

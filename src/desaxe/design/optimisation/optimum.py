@@ -1,7 +1,7 @@
 """The result of `optimize`: the design, its active limits with their multipliers, a message."""
 
 from collections.abc import Mapping, Sequence
-from math import fsum
+from math import fsum, nan
 from typing import Any
 
 import numpy as np
@@ -150,10 +150,10 @@ def none_turns(space: Space, limits: Sequence[Limit]) -> dict[str, Any] | None:
     design = {name: 0.5 * (low + high) for name, (low, high) in ends.items()}
     best: dict[str, Any] = {"ec": lambda low, high: min(max(0.0, low), high), "AB": min, "BC": max}
     design |= {name: choose(*ends[name]) for name, choose in best.items() if name in ends}
-    ec, AB, BC = (float({**space.fixed, **design}[name]) for name in LENGTHS)
-    margin = fsum((BC, -AB, -abs(ec)))
+    ec, AB, BC = (float({**space.fixed, **design}.get(name, nan)) for name in LENGTHS)
+    margin = fsum((BC, -AB, -abs(ec)))  # NaN of sliders that differ
     kept = max((c.bound for c in limits if c.key == "margin" and c.side != UPPER), default=None)
-    if margin >= (kept or 0.0) - SATISFIED * BC:
+    if not margin < (kept or 0.0) - SATISFIED * BC:
         return None
     missed = _misses_turning(-margin) if kept is None else _misses("margin", LOWER, kept - margin)
     keys = [*(limit.key for limit in limits), *space.names]

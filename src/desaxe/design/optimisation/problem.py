@@ -53,6 +53,15 @@ class Space(NamedTuple):
     branch: int
     deadline: Deadline
 
+    @property
+    def rod(self) -> float:
+        """The length of the rod, or the longest one, of several sliders of the first."""
+        if "BC" in self.names:
+            return float(self.high[self.names.index("BC")])
+        return float(
+            self.fixed["BC"] if "BC" in self.fixed else self.fixed["sliders"].members[0].inputs["BC"]
+        )
+
     def designs(self, z: Array) -> dict[str, Any]:
         """Rows of variables as parameters by name."""
         x = self.low + np.atleast_2d(z) * (self.high - self.low)
@@ -113,6 +122,8 @@ def _margin(side: float) -> Smooth:
     """BC - AB - side ec of designs."""
 
     def margin(designs: Mapping[str, Any]) -> Measured:
+        if "sliders" in designs:
+            return Measured(*designs["sliders"].least_margin(side, designs))
         ec, AB, BC = (np.asarray(designs[name], float) for name in LENGTHS)
         value = margins_of(side * ec, AB, BC)[0]
         one = np.ones_like(value)
@@ -191,7 +202,7 @@ def space_of(
     caller: str = "optimize",
     sliders: Any = None,
 ) -> Space:
-    """The box of free parameters and the fixed inputs; several sliders share their lengths."""
+    """The box of free parameters and the fixed inputs, of several sliders the lengths that all have."""
     known = tuple(name for name in INPUTS if name != "theta")
     _check_mapping("over", over, "{'ec': (0, 0.1)}")
     if sliders is None:
@@ -211,7 +222,7 @@ def space_of(
     inputs, loads = loads_of({name: value for name, value in fixed.items() if value is not None})
     numbers = {name: _number(name, value) for name, value in inputs.items()}
     missing = [name for name in LENGTHS if name not in over and name not in numbers]
-    if missing:
+    if missing and sliders is None:
         raise TypeError(f"{caller}: {missing[0]} is missing (in over= or as a number)")
     loads = with_derivatives(loads, {**numbers, **{name: max(pair) for name, pair in ends.items()}})
     low, high = (np.array([pair[i] for pair in ends.values()]) for i in (0, 1))
