@@ -117,7 +117,10 @@ def test_an_edited_file_is_replaced_with_overwrite_alone(tmp_path, capsys, monke
         assert derive([*order[:3], str(tmp_path / name)]) == 2
 
 
-@pytest.mark.parametrize("text", ["", "x = [", '[quantities.x]\nexpression = "V_D"', "quantities = 3"])
+@pytest.mark.parametrize(
+    "text",
+    ["", "x = [", '[quantities.x]\nexpression = "V_D"', "quantities = 3", '[quantities.x]\nunit="W"'],
+)
 def test_a_wrong_file_writes_nothing(tmp_path, capsys, text):
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
     assert derive(["--quantities", str(tmp_path / "mine.toml"), "-o", str(tmp_path / "own")]) == 2

@@ -15,20 +15,18 @@ from typing import Any
 from ..mechanism.own import Definition, change, register, used_by
 from .define import compiled, with_definitions
 
-Arguments = tuple[str, str, Any, Any, dict[str, Any]]
-KEYS = ("expression", "unit", "meaning", "constants")
 
-
-def read_definitions(tables: Mapping[str, Any]) -> tuple[Definition, ...]:
-    """Read the definitions of `[quantities]`, in any order; ValueError names the wrong one."""
-    waiting = {name: _arguments(name, table) for name, table in tables.items()}
+def read_definitions(tables: Mapping[str, Mapping[str, Any]]) -> tuple[Definition, ...]:
+    """Read the definitions of `[quantities]`, in any order, of tables that the schema of scenes lets pass."""
+    waiting = dict(tables)
     known = {name: old for name, old in register().definitions.items() if name not in waiting}
     made: dict[str, Definition] = {}
     while waiting:
         # The definitions that use no other pending one; a circle leaves none, and the first reports it.
-        ready = [n for n, entry in waiting.items() if not _mentions(entry[1], waiting, n)]
+        ready = [n for n, table in waiting.items() if not _mentions(table["expression"], waiting, n)]
         for name in ready or [next(iter(waiting))]:
-            made[name] = compiled(*waiting.pop(name), {**known, **made})
+            table: dict[str, Any] = {"unit": None, "meaning": "", "constants": {}, **waiting.pop(name)}
+            made[name] = compiled(name, **table, known={**known, **made})
     return tuple(made.values())
 
 
@@ -36,23 +34,6 @@ def _mentions(expression: str, names: Mapping[str, Any], own: str) -> bool:
     """True if an expression contains one of the names other than its own, or a sensitivity of one."""
     words = {word.partition("_wrt_")[0] for word in re.findall(r"[A-Za-z_]\w*", expression[:10_000])}
     return any(name in words for name in names if name != own)
-
-
-def _arguments(name: str, table: Any) -> Arguments:
-    """The arguments of a definition."""
-    if not isinstance(table, Mapping):
-        raise ValueError(f"quantities.{name} = {table!r}: expected a table with an expression")
-    wrong = [key for key in table if key not in KEYS]
-    if wrong:
-        raise ValueError(f"quantities.{name}.{wrong[0]}: unknown key; there are {', '.join(KEYS)}")
-    expression, constants = table.get("expression"), table.get("constants", {})
-    if not isinstance(expression, str):
-        raise ValueError(f"quantities.{name}.expression = {expression!r}: expected a text")
-    if not isinstance(constants, Mapping):
-        raise ValueError(
-            f"quantities.{name}.constants = {constants!r}: expected a table such as {{f = 0.08}}"
-        )
-    return name, expression, table.get("unit"), table.get("meaning", ""), dict(constants)
 
 
 def tables_of(made: Iterable[Definition]) -> dict[str, dict[str, Any]]:

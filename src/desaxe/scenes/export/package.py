@@ -32,6 +32,7 @@ from ...support.template import file_text, filled
 from ...support.toml import read_toml
 from ...support.version import version
 from ...support.written import UNSEALED, Generated, is_ours, sealed
+from ..schema import check as check_schema
 
 FACTS = ("status", "margin")
 
@@ -115,6 +116,7 @@ def _read(source: Path) -> tuple[Definition, ...]:
     if not isinstance(tables, dict) or not tables:
         raise ValueError(f"{printable(source)}: there is no [quantities.NAME] in it")
     try:
+        check_schema({"quantities": tables})
         return read_definitions(tables)
     except (ValueError, TypeError) as error:
         raise type(error)(f"{printable(source)}: {error}") from None
