@@ -22,6 +22,26 @@ from ..names import LENGTHS, TURN_STATUS, WHOLE, sensitivity
 
 PLACES = ("theta_max_pressure_angle", "theta_min_pressure_angle")
 SENSITIVITIES = tuple(sensitivity(name, length) for name in WHOLE for length in LENGTHS)
+NEXT = "\n    "
+# Of values by ec, AB and BC; a row of two slopes has the same by BC as by AB.
+_GRADIENTS = """
+Y_outer; -branch * (offset / outer_height); branch * (in_line / outer_height)
+theta_outer; -branch / outer_height / unit_length; branch * (offset / (in_line * outer_height)) / unit_length
+theta_inner; -inner_branch / inner_height / unit_length; -inner_swing; inner_swing
+advance_angle; outward * beta_wrt_ec; outward * beta_wrt_AB; outward * beta_wrt_BC
+return_angle; -outward * beta_wrt_ec; -outward * beta_wrt_AB; -outward * beta_wrt_BC
+time_ratio; ratio_by_beta * beta_wrt_ec; ratio_by_beta * beta_wrt_AB; ratio_by_beta * beta_wrt_BC
+max_pressure_angle; offset_side * steeper; steeper; -(reach_out / rod) * steeper
+min_transmission_angle; -offset_side * steeper; -steeper; (reach_out / rod) * steeper
+min_pressure_angle; offset_side * flatter; -flatter; -(reach_in / rod) * flatter
+max_transmission_angle; -offset_side * flatter; flatter; (reach_in / rod) * flatter
+"""
+_ROWS = (row.split("; ") for row in _GRADIENTS.strip().splitlines())
+_SLOPES = [
+    f"{name}_wrt_{p} = {slope}"
+    for name, *slopes in _ROWS
+    for p, slope in zip(LENGTHS, (*slopes, slopes[-1]), strict=False)
+]
 DEAD_CENTRES = f'''def dead_centres(ec, AB, BC, branch, turning):
     """Quantities of a whole design; branch -1 mirrors it across X, turning -1 turns it backwards."""
     longer_link = BC if AB < BC else AB
@@ -49,9 +69,6 @@ DEAD_CENTRES = f'''def dead_centres(ec, AB, BC, branch, turning):
     inner_side = -1.0 if rod_over < 0.0 else 1.0  # 1 | sign of Y_i: a long crank takes the slider past A
     offset_side = 1.0 if 0.0 < offset else (-1.0 if offset < 0.0 else 0.0)  # 1 | sign of ec
     Y_outer = branch * outer_height * unit_length  # m | slider position at the outer dead centre
-    Y_outer_wrt_ec = -branch * (offset / outer_height)
-    Y_outer_wrt_AB = branch * (in_line / outer_height)
-    Y_outer_wrt_BC = branch * (in_line / outer_height)
     inner_branch = branch * inner_side
     Y_inner = inner_branch * inner_height * unit_length  # m | slider position at the inner dead centre
     Y_inner_wrt_ec = -inner_branch * (offset / inner_height)
@@ -60,16 +77,10 @@ DEAD_CENTRES = f'''def dead_centres(ec, AB, BC, branch, turning):
     outer_turn = atan2(0.0 if offset == 0.0 else -offset, outer_height)
     outer_base = {pi!r} if branch < 0.0 else 0.0
     theta_outer = outer_base + branch * outer_turn  # rad | crank angle of the outer dead centre
-    theta_outer_wrt_ec = -branch / outer_height / unit_length
-    theta_outer_wrt_AB = branch * (offset / (in_line * outer_height)) / unit_length
-    theta_outer_wrt_BC = branch * (offset / (in_line * outer_height)) / unit_length
     inner_turn = atan2(0.0 if offset == 0.0 else -inner_side * offset, inner_height)
     inner_base = 0.0 if branch < 0.0 else {pi!r}
     theta_inner = inner_base + branch * inner_turn  # rad | crank angle of the inner dead centre
-    theta_inner_wrt_ec = -inner_branch / inner_height / unit_length
     inner_swing = inner_branch * (offset / (rod_over * inner_height)) / unit_length
-    theta_inner_wrt_AB = -inner_swing
-    theta_inner_wrt_BC = inner_swing
     links = 4.0 * crank * rod
     heights = outer_height * inner_turning
     no_crank = can_turn and crank == 0.0
@@ -88,48 +99,28 @@ DEAD_CENTRES = f'''def dead_centres(ec, AB, BC, branch, turning):
     beta_wrt_BC = -links * offset * squares / all_sides / unit_length
     outward = branch * turning
     advance_angle = {pi!r} + outward * beta  # rad | crank angle of the stroke outward
-    advance_angle_wrt_ec = outward * beta_wrt_ec
-    advance_angle_wrt_AB = outward * beta_wrt_AB
-    advance_angle_wrt_BC = outward * beta_wrt_BC
     return_angle = {pi!r} - outward * beta  # rad | crank angle of the stroke inward
-    return_angle_wrt_ec = -outward * beta_wrt_ec
-    return_angle_wrt_AB = -outward * beta_wrt_AB
-    return_angle_wrt_BC = -outward * beta_wrt_BC
     shorter_angle = {pi!r} - fabs(beta)
     time_ratio = 1.0 + 2.0 * fabs(beta) / shorter_angle  # 1 | slower over faster stroke in time | B (51)
     ratio_by_beta = offset_side * ({2 * pi!r} / (shorter_angle * shorter_angle))
-    time_ratio_wrt_ec = ratio_by_beta * beta_wrt_ec
-    time_ratio_wrt_AB = ratio_by_beta * beta_wrt_AB
-    time_ratio_wrt_BC = ratio_by_beta * beta_wrt_BC
     reach_out = crank + away  # 1 | how far the rod leans out at most
     least_height = sqrt(room_turn * (rod + reach_out))
     max_pressure_angle = atan2(reach_out, least_height)  # rad | largest pressure angle
     steeper = 1.0 / least_height / unit_length
-    max_pressure_angle_wrt_ec = offset_side * steeper
-    max_pressure_angle_wrt_AB = steeper
-    max_pressure_angle_wrt_BC = -(reach_out / rod) * steeper
     min_transmission_angle = atan2(least_height, reach_out)  # rad | smallest transmission angle
-    min_transmission_angle_wrt_ec = -offset_side * steeper
-    min_transmission_angle_wrt_AB = -steeper
-    min_transmission_angle_wrt_BC = (reach_out / rod) * steeper
     reach_in = (away - crank if crank < away else 0.0) if can_turn else nan  # 1 | the least that it leans out
     room_flat = room_outer if crank < away else rod
     most_height = sqrt(room_flat * (rod + reach_in))
     min_pressure_angle = atan2(reach_in, most_height)  # rad | smallest pressure angle
     is_out = can_turn and crank < away
     flatter = 1.0 / most_height / unit_length if is_out else (0.0 if can_turn else nan)
-    min_pressure_angle_wrt_ec = offset_side * flatter
-    min_pressure_angle_wrt_AB = -flatter
-    min_pressure_angle_wrt_BC = -(reach_in / rod) * flatter
     max_transmission_angle = atan2(most_height, reach_in)  # rad | largest transmission angle
-    max_transmission_angle_wrt_ec = -offset_side * flatter
-    max_transmission_angle_wrt_AB = flatter
-    max_transmission_angle_wrt_BC = (reach_in / rod) * flatter
     steep_angle = {-pi / 2!r} if offset < 0.0 else {pi / 2!r}
     theta_max_pressure_angle = steep_angle if can_turn else nan  # rad | where the rod is steepest
     across = atan2(0.0 if offset == 0.0 else -offset, sqrt(crank - offset) * sqrt(crank + offset))
     flat_angle = across if away <= crank else -steep_angle
     theta_min_pressure_angle = flat_angle if can_turn else nan  # rad | where it is flattest
+    {NEXT.join(_SLOPES)}
     turn_status = 2 if room_turn == 0.0 else (0 if can_turn else 1)  # 1 | of the design
     return {", ".join((*WHOLE, *SENSITIVITIES, *PLACES, TURN_STATUS))}
 '''
