@@ -86,9 +86,24 @@ def _languages() -> dict[str, list[str]]:
 
 def _compile(options: argparse.Namespace) -> int:
     from ..scenes.export.command import run_compile
+    from ..scenes.reading.read import plain_data
 
+    if "crankshaft" in plain_data(options.scene):
+        return _compile_shaft(options)
     place, language = options.place, options.to
     return run_compile(options.scene, place, language, options.check, options.overwrite, options.input)
+
+
+def _compile_shaft(options: argparse.Namespace) -> int:
+    """Several sliders on one crankshaft."""
+    from ..machine.crankshaft import OF_SHAFT, Crankshaft, files_of
+    from ..scenes.export.command import write_files
+    from ..support.toml import read_toml
+
+    outputs = read_toml(Path(options.scene)).get("outputs", OF_SHAFT)
+    source = Path(options.scene).name
+    made = files_of(Crankshaft.read(options.scene), Path(options.place), outputs, options.to, source)
+    return write_files(made, options.scene, options.place, options.check, options.overwrite)
 
 
 def _explore(options: argparse.Namespace) -> int:

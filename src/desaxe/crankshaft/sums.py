@@ -274,7 +274,7 @@ class SliderSums:
     def _fact(self, name: str, values: Mapping[int, Any], state: ShaftState) -> Any:
         """The speed, the worst status, the least margin."""
         if name == "omega":
-            return state.omega
+            return np.where(state.stalled, np.nan, state.omega) if np.any(state.stalled) else state.omega
         own = [row[name] for k, row in values.items() if k != SHAFT]
         if name == "margin":
             return min(own) if all(np.ndim(v) == 0 for v in own) else np.minimum.reduce(own)

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from html import escape
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,18 +16,20 @@ from ..mechanism.messages import amount, errors_in, listed, named
 from ..mechanism.quantity_units import UnitSystem
 from ..mechanism.read import read, read_array
 from ..mechanism.slips import warn_of_slips
-from ..runtime.request import MachineSpeed
+from ..runtime.request import MachineSpeed, several
 from ..scenes.content import Content
 from ..scenes.schema import SceneError, hint
 from ..support.files import as_path
 from ..support.forks import IMPORTS
+from ..support.generated import Generated
 from ..support.shown import with_unit
 from ..support.toml import read_toml
 from .arguments import in_si
-from .machine import Machine, checked_inputs, restored
+from .machine import OUTPUTS, Machine, checked_inputs, restored
 from .scenes import inputs_of_content
 
 ANGLES = ("phase", "bank", "firing", "spacing", "position", "I_shaft")
+OF_SHAFT = ("T_in", "F_shaking_X", "F_shaking_Y", "M_shaking")  # to compile
 RESULTS = ("outputs", "reduce", "peak", "check", "picture", "results")  # of a scene
 SAME = 1e-9  # rad: a firing that is at its phase and bank
 
@@ -154,6 +157,33 @@ class Crankshaft(Machine):
         """Not of several sliders: TypeError."""
         return self.scene()
 
+    def compile(
+        self,
+        path: Any,
+        outputs: Any = OUTPUTS,
+        to: str = "numba",
+        *,
+        check: bool = False,
+        overwrite: bool = False,
+        input: str = "torque",
+        **more: Any,
+    ) -> Any:
+        """Write quantities of the shaft as source code that needs nothing of desaxe; the path.
+
+        path, to, check, overwrite as in `desaxe.compile`, but for FMUs; without outputs the torque and what
+        shakes the frame. The code takes theta, the speed of
+        the shaft if it has none, and gives SI units; all else is folded in. That of slider 2, "a_C[2]", is
+        `a_C_2` there. Inputs of `more` replace those of the crankshaft; `alpha=None` leaves it open.
+        """
+        with IMPORTS:
+            from ..scenes.export.compile import write_or_check
+
+        place = as_path("path", path)
+        opened = {n: None for n, value in more.items() if n in STATE and value is None}
+        shaft = self.replace(**{n: value for n, value in more.items() if n not in opened})
+        outputs = OF_SHAFT if outputs is OUTPUTS else outputs
+        return write_or_check(files_of(shaft, place, outputs, to, opened=opened), place, check, overwrite)
+
     def report(
         self,
         path: Any,
@@ -201,6 +231,24 @@ class Crankshaft(Machine):
             if value is not None
         ]
         return ", ".join([f"crankshaft of {self['sliders']!r}", *facts]) + "; slider 0:"
+
+
+def files_of(
+    shaft: Crankshaft,
+    path: Path,
+    outputs: Any,
+    to: str,
+    source: str = "",
+    opened: Mapping[str, None] | None = None,
+) -> Generated:
+    """The files that `compile` writes; `opened` are inputs that stay open."""
+    with IMPORTS:
+        from ..scenes.export.compile import generated_of_shaft
+
+    speeds = {n: shaft.get(n) for n in STATE[1:] if shaft.get(n) is not None}
+    speeds = {"alpha": 0.0, **({} if "omega" in speeds else {"omega0": None}), **speeds, **(opened or {})}
+    names = (outputs,) if isinstance(outputs, str) else several(outputs)
+    return generated_of_shaft(shaft["sliders"], speeds, names, path, to, source)
 
 
 def content_of_shaft(path: str | PathLike[str]) -> tuple[Content, dict[str, Any]]:

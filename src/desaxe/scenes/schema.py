@@ -278,7 +278,7 @@ def _wrong_key(value: Mapping[str, Any], rule: Rule, key: str) -> str | None:
             home = INPUTS[name].section if name in INPUTS else ""
             allowed = f"{name} belongs in [{home}]" if home else hint(str(name), names)
             if _dotted(key, name) == "crankshaft":
-                allowed = "several sliders are for desaxe.Crankshaft.read, `desaxe run` and `CALL --machine`"
+                allowed = "several sliders are for desaxe.Crankshaft.read, `desaxe run` and `desaxe compile`"
             return f"{_dotted(key, name)} = {shown(value[name])}: unknown key; {allowed}"
     for name in rule["required"]:
         if name not in value:

@@ -1,8 +1,10 @@
 """`desaxe compile`: write the files of a scene, or show how those that are there differ."""
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
+from ...support.generated import Generated
 from ...support.shown import printable
 from ..scene import scene as scene_of
 from .compile import generated, lost_of
@@ -21,6 +23,14 @@ def run_compile(
         raise ValueError("--input is for --to fmu")
     scene = scene_of(source)
     made = generated(scene, Path(place), to, drive)
+    lost = [] if to == "fmu" else lost_of(scene.content, to)
+    return write_files(made, source, place, check, overwrite, lost)
+
+
+def write_files(
+    made: Generated, source: str, place: str, check: bool, overwrite: bool, lost: Sequence[str] = ()
+) -> int:
+    """Write files of a scene, or compare them; `lost` is what they leave out. Return the exit status."""
     if check:
         lines = [*map(printable, made.diff())]
         print(*lines, *([] if lines else [f"{printable(place)}: fresh"]), sep="\n")
@@ -30,7 +40,6 @@ def run_compile(
         return 1 if lines else 0
     made.write(overwrite)
     print(*map(printable, made.summary()), sep="\n")
-    lost = [] if to == "fmu" else lost_of(scene.content, to)
     if lost:
         print(f"not compiled (`desaxe run` has it): {', '.join(lost)}", file=sys.stderr)
     return 0

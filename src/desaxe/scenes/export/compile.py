@@ -2,14 +2,17 @@
 
 import keyword
 import re
-from collections.abc import Container, Mapping
+from collections.abc import Callable, Container, Mapping, Sequence
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from ...compiler.languages import language_of, languages
+from ...compiler.languages.protocol import Module
 from ...compiler.languages.shared import refuse_taken
 from ...compiler.languages.words import words_of
+from ...crankshaft.sums import SliderSums
 from ...mechanism.keywords import with_known_keywords
 from ...mechanism.own import using
 from ...support.checks import yes_or_no
@@ -24,6 +27,7 @@ from .fmu.write import fmu_of
 from .numba_module import numba_module_of
 from .peaks import left_out_of_module
 from .portable import Order, left_out, module_of
+from .shaft import module_of_shaft, written_name
 
 DEFAULT = "numba"
 
@@ -73,12 +77,7 @@ def compile(
     place = as_path("path", path)
     yes_or_no(check=check, overwrite=overwrite)
     made = generated(scene if isinstance(scene, Scene) else scene_of(scene), place, to, input)
-    if not check:
-        made.write(overwrite)
-    elif stale := made.stale():
-        names = ", ".join(Path(name).name for name in stale)
-        raise ValueError(f"{printable(place)}: not what the scene gives ({names}); write it again")
-    return place
+    return write_or_check(made, place, check, overwrite)
 
 
 def those_with(has: str) -> str:
@@ -107,8 +106,32 @@ def _generated(scene: Scene, place: Path, to: str) -> Generated:
     language = language_of(to, "fmu")
     if scene.content.accuracy == "extended" and not language.extended:
         raise SceneError(f'accuracy = "extended": {to} has standard, {those_with("extended")} have both')
-    words = words_of(to)
-    refuse_taken(scene.content.outputs, words.outputs)
+    make = numba_module_of if to == "numba" else module_of
+    source = Path(scene.name).name
+    return _files(place, to, scene.content.outputs, source, "desaxe.compile(scene, ", partial(make, scene))
+
+
+def generated_of_shaft(
+    sliders: SliderSums,
+    speeds: Mapping[str, Any],
+    outputs: Sequence[str],
+    place: Path,
+    to: str,
+    source: str = "",
+) -> Generated:
+    """The files of quantities of a crankshaft in a language; nothing is written."""
+    if to == "fmu":
+        raise ValueError('to = "fmu": an FMU is of one slider; compile the crankshaft to another language')
+    make = partial(module_of_shaft, sliders, speeds, outputs)
+    return _files(place, to, [*map(written_name, outputs)], source, "crankshaft.compile(", make)
+
+
+def _files(
+    place: Path, to: str, outputs: Sequence[str], source: str, call: str, make: Callable[[Order], Module]
+) -> Generated:
+    """The files of a module of these outputs; `source` is its file, else a `call` made it."""
+    language, words = language_of(to, "fmu"), words_of(to)
+    refuse_taken(outputs, words.outputs)
     is_file = place.suffix == language.suffix
     name = place.stem if is_file else place.name
     if language.only_file:
@@ -116,14 +139,23 @@ def _generated(scene: Scene, place: Path, to: str) -> Generated:
     else:
         require_name(name, place, words.modules)
     folder = place.parent if is_file else place
-    source = Path(scene.name).name
     option, keyword = (f" --to {to}", f', to="{to}"') if to != DEFAULT else ("", "")
     said = f"desaxe compile {source}{option} -o {place.name}"
     if not source:
-        said = f'desaxe.compile(scene, "{place.name}"{keyword})'
-    make = numba_module_of if to == "numba" else module_of
-    module = make(scene, Order(to, name, said, language.second_order, language.steps))
+        said = f'{call}"{place.name}"{keyword})'
+    module = make(Order(to, name, said, language.second_order, language.steps))
     return Generated(folder, {file: sealed(text) for file, text in language.files(module).items()})
+
+
+def write_or_check(made: Generated, place: Path, check: bool, overwrite: bool) -> Path:
+    """Write files, or with `check` raise ValueError where others are there; the path."""
+    yes_or_no(check=check, overwrite=overwrite)
+    if not check:
+        made.write(overwrite)
+    elif stale := made.stale():
+        names = ", ".join(Path(name).name for name in stale)
+        raise ValueError(f"{printable(place)}: not what the scene gives ({names}); write it again")
+    return place
 
 
 def lost_of(content: Content, to: str) -> list[str]:
