@@ -173,7 +173,7 @@ def pair(machine, call="evaluate", name="T_in", **inputs):
         (lambda m: dx.peak("T_in", sliders=3.0, **m), "sliders = 3.0: those of a desaxe.Crankshaft"),
         (lambda m: dx.harmonics("T_in", sliders="four", **m), "sliders = 'four': those of"),
         (lambda m: dx.Crankshaft(m, phase=[[0.0], [1.0, 2.0]]), "phase"),
-        (lambda m: pair(m, "compile", to="c"), "a scene is of one slider"),
+        (lambda m: pair(m, "compile", to="fmu"), "an FMU is of one slider"),
     ],
 )
 def test_what_is_wrong_is_said(call, message):

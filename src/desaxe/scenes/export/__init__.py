@@ -3,6 +3,7 @@
 compile       `desaxe.compile`: a scene to files
 command       `desaxe compile`
 portable      a scene as the `Module` that every language writes
+shaft         a crankshaft as such a `Module`: sums over its sliders
 numba_module  what a numba module has besides: axes, reductions, peaks
 peaks         the scene's peaks in it
 axes          the scene's lists and ranges in it

@@ -169,7 +169,7 @@ def _facts(
 
 
 class Asked(Protocol):
-    """What a request is made of: a scene's content, or a slider of a crankshaft."""
+    """The inputs of a request: a scene's content, or a slider of a crankshaft."""
 
     @property
     def inputs(self) -> Mapping[str, Any]:

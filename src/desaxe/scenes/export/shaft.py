@@ -36,7 +36,7 @@ MOTION = ("theta", "omega0", "omega", "alpha")
 
 
 class SliderRequest(NamedTuple):
-    """What is asked of a slider, as `asked_of` takes it."""
+    """The inputs of a slider, as `asked_of` takes them."""
 
     inputs: Mapping[str, Any]
     branch: int

@@ -184,7 +184,7 @@ class SharedEnd:
         self.pays = len(same) >= SHARED
 
     def head(self, program: Program) -> Program:
-        """What a form computes for the rest."""
+        """The lines of a form that the rest needs."""
         names = {} if program is self.stable else self.bare
         return keep_outputs(program, [names.get(name, name) for name in self.rest.inputs])
 
