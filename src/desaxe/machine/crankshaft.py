@@ -21,9 +21,9 @@ from ..scenes.content import Content
 from ..scenes.schema import SceneError, hint
 from ..support.files import as_path
 from ..support.forks import IMPORTS
-from ..support.generated import Generated
 from ..support.shown import with_unit
 from ..support.toml import read_toml
+from ..support.written import Generated
 from .arguments import in_si
 from .machine import OUTPUTS, Machine, checked_inputs, restored
 from .scenes import inputs_of_content

@@ -4,8 +4,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from ...support.generated import Generated
 from ...support.shown import printable
+from ...support.written import Generated
 from ..scene import scene as scene_of
 from .compile import generated, lost_of
 
