@@ -84,6 +84,19 @@ def test_what_the_data_leave_open_is_named():
     assert result["value"]["AB"] * result["value"]["omega0"] == pytest.approx(0.125 * 150.0)
 
 
+def test_a_measured_speed_of_the_crank_is_an_input():
+    """Beside the angles, one where it is not known; with a given speed it is measured as any other."""
+    omega = np.linspace(100.0, 180.0, THETA.size)
+    data = {"theta": THETA, "V_C": dx.evaluate("V_C", theta=THETA, omega=omega, **MACHINE)}
+    omega[3] = np.nan
+    result = dx.fit({**data, "omega": omega}, over={"ec": 0.0, "AB": 0.1}, BC=MACHINE["BC"])
+    for name in ("ec", "AB"):
+        assert result["value"][name] == pytest.approx(MACHINE[name], rel=1e-9)
+    assert np.flatnonzero(np.isnan(result["residuals"]["V_C"])).tolist() == [3]
+    with pytest.raises(ValueError, match="sigma: V_C, omega are measured"):
+        dx.fit({**data, "omega": omega}, over=OVER, omega0=150.0)
+
+
 def test_the_jacobian_against_differences_of_the_truth():
     result = fitted(measured(1))
     at, value = 17, result["value"]

@@ -45,7 +45,8 @@ def fit(
 
     data      mapping of `theta` [rad] or `t` [s] and of measured quantities (`Y`, `a_C`, `T_in`, ...) to
               samples, NaN where one is missing; or a DataFrame, a Dataset, or the path of a CSV file whose
-              heading names them: `theta [deg], a_C [m/s2]`
+              heading names them: `theta [deg], a_C [m/s2]`. Without omega and omega0 in over and fixed a
+              column `omega` beside `theta` is the speed at each sample, an input
     over      dict parameter -> start, or (low, high): bounds, in which several starts are tried; of a machine
               also names alone, which start at its numbers
     sigma     dict quantity -> standard deviation of its samples, in the quantity's unit. Without it one
@@ -87,12 +88,14 @@ def fit(
     if not isinstance(loss, str) or loss not in LOSSES:
         raise ValueError(f"loss = {shown(loss)}: {did_you_mean(loss, LOSSES)}there are {', '.join(LOSSES)}")
     whole_number("seed", seed, 0, 2**32 - 1)
-    read = read_data(data, "omega" in state)
+    read = read_data(data, "omega0" not in state)
     for name, value in fixed.items():
         if np.ndim(value) and np.size(value) not in (1, read.size) and not callable(value):
             raise ValueError(
                 f"{name}: {np.size(value)} values, and a fit is of one machine: give one, or a range in over"
             )
+    if read.course == "theta" and "omega" in read.measured and not {"omega", "omega0"} & state.keys():
+        read, fixed = _with_speeds(read, fixed)
     unknowns = unknowns_of(over, nuisance, read, fixed)
     if read.size < len(unknowns):
         raise ValueError(
@@ -103,6 +106,15 @@ def fit(
     before = None if given else _set_sigma(model, loss, seed)
     result = solve(model, loss, seed, absolute=bool(given), before=before)
     return _result(model, result, loss, absolute=bool(given))
+
+
+def _with_speeds(data: Data, fixed: Mapping[str, Any]) -> tuple[Data, dict[str, Any]]:
+    """The data without the measured speed of the crank, which is an input; without it a sample is missing."""
+    columns = dict(data.measured)
+    omega = columns.pop("omega")
+    known = np.isfinite(omega)
+    measured = {name: np.where(known, column, np.nan) for name, column in columns.items()}
+    return data._replace(measured=measured), {**fixed, "omega": np.where(known, omega, 0.0)}
 
 
 def _sigmas(sigma: Mapping[str, Any] | None, data: Data) -> dict[str, float]:
