@@ -2,14 +2,14 @@
 
 import os
 import re
-import sys
+from collections.abc import Iterator
 from contextlib import suppress
 from math import inf
 from numbers import Real
 from pathlib import Path
 from typing import Any
 
-from .forks import IMPORTS
+from .forks import imported
 from .shown import shown
 
 ALWAYS = 100_000_000  # bytes that are not checked
@@ -59,35 +59,22 @@ def require(size: float, what: str) -> None:
 
 def available() -> float:
     """Bytes that this process may still take of the machine, its container and its own limit."""
-    return max(min(_of_machine(), _of_container(), _of_process()), 0.0)
+    return max(min(_limits(), default=inf), 0.0)
 
 
-def _of_machine() -> float:
+def _limits() -> Iterator[float]:
+    """Bytes that each of these has left, as far as it says so."""
     with suppress(OSError, ValueError, IndexError):
-        for line in Path("/proc/meminfo").read_text().splitlines():
-            if line.startswith("MemAvailable:"):
-                return 1024.0 * int(line.split()[1])
+        words = Path("/proc/meminfo").read_text().split()
+        yield 1024.0 * int(words[words.index("MemAvailable:") + 1])
     with suppress(AttributeError, OSError, ValueError):
-        return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-    return inf
-
-
-def _of_container() -> float:
+        yield float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     with suppress(OSError, ValueError):
         most = int((_CGROUP / "memory.max").read_text())  # ValueError for "max"
-        return float(most - int((_CGROUP / "memory.current").read_text()))
-    return inf
-
-
-def _of_process() -> float:
-    if sys.platform == "win32":
-        return inf
-    with suppress(OSError, ValueError, IndexError):
-        with IMPORTS:
-            import resource
-
+        yield float(most - int((_CGROUP / "memory.current").read_text()))
+    with suppress(ImportError, OSError, ValueError, IndexError):
+        resource = imported("resource")
         most = resource.getrlimit(resource.RLIMIT_AS)[0]
         if most != resource.RLIM_INFINITY:
             pages = int(Path("/proc/self/statm").read_text().split()[0])
-            return float(most - pages * resource.getpagesize())
-    return inf
+            yield float(most - pages * resource.getpagesize())
