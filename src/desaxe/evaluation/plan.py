@@ -90,7 +90,7 @@ class Plan(NamedTuple):
     @property
     def points(self) -> int:
         """Points of the grid, those behind a reduced one included."""
-        return self.outer.points
+        return prod(self.outer.sizes.values())
 
     def points_in(self, block: Block) -> int:
         """Points of the grid in a block, those behind a reduced one included."""
@@ -205,11 +205,11 @@ def lazy_values(plan: Plan, chunks: Any, threads: int | None) -> dict[str, Any]:
     values, result = plan.outer.columns, dict[str, Any]()
     for step in plan.all:
         token = tokenize(step.identity, *(values[name] for name in step.columns), lengths)
-        columns = []
+        columns, axes = [], [*dict.fromkeys((*step.dims, *step.columns.values()))]
         for name, dim in step.columns.items():
             own = lengths.get(dim, (values[name].size,))  # a reduced axis is whole
             column = da.from_array(values[name], chunks=(own,), name=f"{name}-{token}", inline_array=True)
-            columns += [column, (step.axes.index(dim),)]
+            columns += [column, (axes.index(dim),)]
         along = tuple(range(len(step.dims)))
         empty = np.empty((0,) * len(along), object)
         with warnings.catch_warnings():

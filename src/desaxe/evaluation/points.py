@@ -9,7 +9,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from math import prod
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -69,11 +68,6 @@ class Outer(NamedTuple):
         """The arrays of the inputs, and of shared dimensions the positions along them."""
         shared = {dim: np.arange(float(n)) for dim, n in self.sizes.items() if dim not in self.axes}
         return {**self.axes, **shared}
-
-    @property
-    def points(self) -> int:
-        """The number of points."""
-        return prod(self.sizes.values())
 
     @property
     def shown(self) -> tuple[str, ...]:
@@ -160,11 +154,6 @@ class Step(ABC):
 
     dims: tuple[str, ...]
     along: tuple[tuple[str, str], ...]
-
-    @property
-    def axes(self) -> tuple[str, ...]:
-        """The dimensions whose values the step needs; those that are reduced are whole in every block."""
-        return self.dims
 
     @property
     def columns(self) -> dict[str, str]:

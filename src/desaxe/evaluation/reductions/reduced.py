@@ -56,11 +56,6 @@ class Reduced(Step):
     of: Points
 
     @property
-    def axes(self) -> tuple[str, ...]:
-        """The dimensions whose values the step needs."""
-        return self.of.dims
-
-    @property
     def own(self) -> tuple[Definition, ...]:
         """The definitions that it needs."""
         return self.of.own
@@ -102,7 +97,7 @@ class Reduced(Step):
         return self.of.call.loads is not None and "theta" in extremes_at_end(chain)
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
-        """The outputs of a block by name, from the values along each of its `axes`."""
+        """The outputs of a block by name, from the values along its `columns`."""
         result: dict[str, Array] = {}
         firsts = self._firsts(values, threads)
         for name in self.names:
@@ -288,7 +283,7 @@ class OfDesign(Step):
         return first | {slope: Output(FLOAT, {"long_name": slope}) for slope in slopes}
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
-        """The outputs of a block by name, from the values along each of its dimensions."""
+        """The outputs of a block by name, from the values along its `columns`."""
         columns = outer_arrays(values, self.columns, self.dims)
         value, gradient = self.function({**dict(self.numbers), **columns})
         shape = np.broadcast_shapes(*(array.shape for array in columns.values()))
