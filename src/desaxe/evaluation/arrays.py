@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 Array = NDArray[Any]
 
 NESTED = 200_000  # points from which a nest of loops, a kernel of its own, is worth its compilation
-SMALL = 20_000  # points: so few always fit into memory
+SMALL = 100_000  # points: so few always fit into memory
 INNERMOST = 64  # points: a shorter innermost loop costs more to start than it saves
 LEAST, MOST = SAFE
 FLOAT, STATUS = np.dtype(np.float64), np.dtype(np.int8)

@@ -92,7 +92,7 @@ def provenance(
 ) -> dict[str, Any]:
     """Attributes of a dataset: the request, and the version that computed it; `of`: names behind `names`."""
     axes = [name for name, array in inputs.items() if array.ndim]
-    fixed = [said(name, array, unit_of(name)) for name, array in inputs.items() if not array.ndim]
+    fixed = [said(n, a, _input_attributes(n)["units"]) for n, a in inputs.items() if not a.ndim]
     names = tuple(names)
     own = text_of((*names, *of)) if register().definitions else ""
     scene = ", ".join(names) + (f" over {', '.join(axes)}" if axes else "")

@@ -114,8 +114,8 @@ def sweep_of(request: SweepRequest) -> Sweep:
     if reduce is not None:
         names = ((names,) if isinstance(names, str) else several(names)) + names_reduced(reduce)
     outer = outer_of(names, request.inputs, branch, request.threads, always=reduce is None)
-    for name in outer.dimensions:
-        if not outer.axes[name].size:
+    for name, size in outer.sizes.items():
+        if not size:
             raise ValueError(f"{name}: a sweep needs at least one value of it")
     checked = accuracy_of(accuracy)
     reductions = None if reduce is None else reductions_of(reduce, outer.dimensions, outer.names)
@@ -167,7 +167,8 @@ def _plan_of(
     if outer.names:
         plan = plan_of(outer, branch, accuracy, reductions)
     else:
-        plan = Plan(outer, branch, accuracy, (), tuple(name for name in outer.dimensions if name != "theta"))
+        designs = tuple(outer.of([name for name in outer.axes if name != "theta"]))
+        plan = Plan(outer, branch, accuracy, (), designs)
     margin = () if outer.names and reductions is None else margin_of(outer, branch, accuracy, plan.dims)
     return plan._replace(beside=(*margin, *peaks))
 
