@@ -1,5 +1,6 @@
 """[steady] of a scene: the values of `desaxe.steady`, in the scene's units; what is wrong is named."""
 
+import re
 from math import pi
 
 import numpy as np
@@ -67,6 +68,16 @@ def test_a_motor_of_points_and_a_number():
     weak = dx.scene({**one, "steady": {"torque": 3}}).run()
     assert weak.steady.dataset["status"] == 1
     assert "too weak" in weak.report()
+    assert "On 3 N m." in weak.report()
+
+
+def test_why_there_is_no_steady_state_is_in_the_units_of_the_scene():
+    """A motor without torque above 900 rpm, as the load is in the mean."""
+    motor = {"over_omega": [["0 rpm", 300], ["900 rpm", 0]]}
+    result = dx.scene({**SCENE, "loads": {}, "steady": {"torque": motor}}).run()
+    texts = " ".join(result.report().split()), " ".join(map(str, result.steady.found["message"]))
+    in_rpm, in_si = (float(re.search(r"at (\S+) \S+, as at others", text)[1]) for text in texts)
+    assert in_rpm == pytest.approx(in_si * 30 / pi, rel=1e-5)
 
 
 def test_a_machine_writes_the_motor_into_its_scene(tmp_path):

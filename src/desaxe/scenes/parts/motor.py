@@ -10,6 +10,7 @@ import numpy as np
 
 from ...design.steady.result import NUMBERS, Steady
 from ...design.steady.steady import FLUCTUATION, FLYWHEEL, steady
+from ...evaluation.in_units import in_units
 from ...evaluation.labels import input_attributes
 from ...loads.load import Load
 from ...loads.motors import Motor
@@ -20,7 +21,7 @@ from ...mechanism.status import SteadyStatus
 from ...support.shown import printed
 from ..content import Content, PlanRow, RequestAnswer, RequestPlan, Sink
 from ..document.blocks import ROWS as LISTED
-from ..document.blocks import Section, Text, TextTable, cell, thinned
+from ..document.blocks import Section, Text, TextTable, cell, thinned, with_unit
 from ..loads import motor_of
 from ..reading.values import Value, read_number
 from ..schema import SceneError, shown
@@ -92,13 +93,17 @@ class MotorResult(RequestAnswer):
             row = [cell(dataset[name].values[k]) for name, k in zip(axes, index, strict=True)]
             rows.append([*row, *(cell(dataset[name].values[index]) for name in figures)])
         names = [*axes, *figures]
-        messages = np.ravel(np.asarray(self.found["message"], object)).tolist()
+        messages = np.ravel(np.asarray(in_units(self.found, units)["message"], object)).tolist()
         reasons = [message for message in dict.fromkeys(messages) if message != "ok"]
         more = len(reasons) - REASONS
         remarks = [*reasons[:REASONS], *[f"and {more} more reasons"] * (more > 0)]
         remarks += [f"{LISTED} of {len(messages)} designs are shown"] * (len(messages) > LISTED)
-        table = TextTable(names, rows, [printed(dataset[name].units) for name in names])
-        return Section("Steady state", [Text(f"On {self.asked.torque!r}."), table, *map(Text, remarks)])
+        table, torque = (
+            TextTable(names, rows, [printed(dataset[name].units) for name in names]),
+            self.asked.torque,
+        )
+        motor = with_unit(units, "T_in", torque) if isinstance(torque, float) else repr(torque)
+        return Section("Steady state", [Text(f"On {motor}."), table, *map(Text, remarks)])
 
 
 def on_motor(
