@@ -200,6 +200,11 @@ def test_angles_are_those_of_a_turn_and_rounding_is_no_torque(tmp_path):
     assert float(page.under("torque, peak")[0].split()[-2]) >= 0.0
 
 
+def test_why_there_is_no_drive_is_in_the_units_of_the_page(tmp_path):
+    odd = PRESS.replace(F_Y=PRESS.over_theta([0, 100, 400], [0, -5, 3], kind="linear", period=500))
+    assert "its period is 500 deg" in odd.report(tmp_path / "a.md", "T_in", theta=[0, 60]).read_text()
+
+
 def test_tolerances(tmp_path):
     rough = {"ec": 0.1, "AB": "0.05 mm"}
     path = PRESS.report(tmp_path / "a.html", "stroke", tolerances=rough)

@@ -17,6 +17,7 @@ from ...loads.stroke import OverStroke
 from ...mechanism.catalogue import of_design
 from ...mechanism.closed import TURN
 from ...mechanism.inputs import INPUTS
+from ...mechanism.messages import errors_in
 from ...mechanism.names import LENGTHS, LOADS, STATUSES
 from ...mechanism.own import used_by
 from ...mechanism.quantity_units import UnitSystem
@@ -196,7 +197,7 @@ def drive(content: Content, units: UnitSystem, fluctuation: float) -> Section | 
     options: dict[str, Any] = {"branch": content.branch, "fluctuation": fluctuation}
     for one in designs_of(content, units):
         words = one.words or "this design"
-        result = _attempted(words, blocks, DriveStatus, partial(drive_of, **options, **one.inputs))
+        result = _attempted(words, blocks, units, DriveStatus, partial(drive_of, **options, **one.inputs))
         if result is not None and "T_in" in result.course:
             drives[words] = in_units(result, units)
     if not drives:
@@ -208,10 +209,13 @@ def drive(content: Content, units: UnitSystem, fluctuation: float) -> Section | 
     return Section("Drive", [table, picture, *blocks])
 
 
-def _attempted(words: str, remarks: list[Block], codes: Any, call: Callable[[], Any]) -> Any:
+def _attempted(
+    words: str, remarks: list[Block], units: UnitSystem, codes: Any, call: Callable[[], Any]
+) -> Any:
     """The answer of a call; None where it refuses. A remark says why, or what its status is."""
     try:
-        result = call()
+        with errors_in(units):
+            result = call()
     except (ValueError, TypeError) as error:
         remarks.append(Text(f"{words}: {error}"))
         return None
@@ -255,7 +259,7 @@ def spread(content: Content, units: UnitSystem, tolerances: Mapping[str, float])
         measure: Any = name if of_design(name) else ("absmax", name)
         words = name if of_design(name) else f"largest magnitude of {name}"
         options = {"branch": content.branch, "samples": SAMPLES, **design.inputs, **ranges}
-        result = _attempted(words, remarks, ToleranceStatus, partial(tolerance, measure, **options))
+        result = _attempted(words, remarks, units, ToleranceStatus, partial(tolerance, measure, **options))
         if result is not None:
             rows.append((words, *_scatter(name, result, units)))
     first = Text(f"With {listed}{about}, each a normal distribution of 3 standard deviations.")
