@@ -73,7 +73,7 @@ def evaluate(names: Any, **inputs: Any) -> Any:
     raise NotImplementedError  # never run
 
 
-class Call(Protocol[P, T_co]):
+class TypedCall(Protocol[P, T_co]):
     """A public call: its signature, and that of keywords from a mapping."""
 
     @overload
@@ -82,7 +82,7 @@ class Call(Protocol[P, T_co]):
     def __call__(self, *args: Any, **inputs: Any) -> T_co: ...
 
 
-def _call(function: Callable[P, T_co]) -> Call[P, T_co]:
+def _call(function: Callable[P, T_co]) -> TypedCall[P, T_co]:
     return function
 
 
