@@ -109,7 +109,7 @@ def test_derivatives_of_a_motion(kind):
     parameters = PARAMETERS | ({"mu": MU, "mu[1]": MU} if kind == "friction" else {})
     exact = shaft.simulate(**STARTS, **how, wrt=[*parameters])
     for parameter, value in parameters.items():
-        h = 1e-5 * abs(value)
+        h = 1e-4 * abs(value)
         ends = []
         for side in (1, -1):
             moved = {parameter: value + side * h}

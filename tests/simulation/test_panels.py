@@ -1,19 +1,12 @@
 """Motions under a torque of t, theta and omega in one call: those of one at a time, and of arbs."""
 
 import math
-from functools import partial
 
 import numpy as np
 import pytest
 
 import desaxe as dx
 from benchmarks.rows import cranks
-from desaxe.simulation.loops import law as loops
-from desaxe.simulation.loops.compiled import DesignFamily, packed, records_of, run
-from desaxe.simulation.loops.motions import designs
-from desaxe.simulation.loops.torque import compiled
-from desaxe.simulation.model import form_of
-from desaxe.simulation.panel import TABLE
 from tests.effort import cases
 from tests.motions import true_end
 
@@ -83,40 +76,6 @@ def test_the_end_of_a_motion_against_arbs():
     assert abs(result["omega"][0, 0] / omega - 1.0) < 1e-11
 
 
-def test_machine_code_has_the_values_of_plain_python():
-    """A crank of 1 kg m^2 under 3 + t N m, from rest; but for fused products."""
-    kernel, torque = DesignFamily(form_of({}), (("ec", 0.0),)).kernel(), compiled(lambda t: 3.0 + t)
-    inputs = dict.fromkeys(kernel.scalars, 0.0) | {"AB": 0.1, "BC": 0.3, "I_crank": 1.0}
-    law = np.zeros((2, loops.TERMS + loops.TERM))
-    law[:, loops.KERNEL], law[:, loops.THETA0] = kernel.code.address, 0.5
-    law[:, loops.FIRST], law[:, loops.LAST] = (-math.inf, -1000.0), (math.inf, 1000.0)
-    law[:, loops.COUNT], law[:, loops.CALLS], law[:, loops.TERMS + loops.FACTOR] = 1.0, 1.0, 1.0
-    piece = loops.FUNCTION, torque.address, -math.inf, math.inf, 1.0, 1.0
-    law[:, loops.TERMS + loops.KIND : -1] = piece
-    arguments = {
-        "law": law, "data": packed(kernel, inputs, 2), "kinks": np.empty((2, 0, 3)), "knots": np.empty(0),
-        "sheets": np.empty((2, 0, 15)), "table": TABLE, **records_of(64, law.shape[1]),
-        "times": np.array([0.0, 1e-3, 0.3, 2.0]), "how": np.array([1e-10, 2.0, 1000.0]),
-    }  # fmt: skip
-    answers = []
-    for code in (partial(run, designs), designs):
-        outs = {
-            "history": np.zeros((2, 3, 4)),
-            "status": np.full(2, -1, np.int8),
-            "numbers": np.empty((2, 4)),
-        }
-        with np.errstate(all="ignore"):
-            code(**arguments, **outs)
-        answers.append(outs["history"])
-        assert outs["status"].tolist() == [0, 0]
-        assert outs["numbers"][:, 0].tolist() == [2.0, 2.0]
-    np.testing.assert_allclose(*answers, rtol=1e-10)
-    times = arguments["times"]
-    right = [0.5 + 1.5 * times**2 + times**3 / 6.0, 3.0 * times + 0.5 * times**2, 3.0 + times]
-    for design in answers[0]:
-        np.testing.assert_allclose(design, right, rtol=1e-9)
-
-
 @pytest.mark.parametrize("inertia", [0.02, np.array([0.02, 0.021])], ids=["one", "many"])
 def test_a_function_that_jumps_next_to_an_end_of_a_panel(inertia):
     """Kinetic energy of a balanced crank against the work of 1 N m where cos(theta) > 0, else 0.2 N m."""
@@ -142,7 +101,7 @@ FORMS = {
 @pytest.mark.parametrize("mu", [0.0, 0.15])
 @pytest.mark.parametrize("name", FORMS)
 def test_the_compiled_law_is_that_of_functions(name, mu):
-    """A closed form of the torque against a function, with which NumPy evaluates the law."""
+    """A closed form of the torque against a function, which the loops call."""
     machine = {"AB": 0.04, "BC": 0.064, "ec": 0.01, "m_rod": 0.5, "m_slider": 0.8, "I_crank": 0.01}
     call = {**machine, "g_Y": -9.81, "mu": mu, "t_end": 0.3, "F_X": 5.0, "times": np.linspace(0.0, 0.3, 31)}
     force = dx.over_theta(["0 deg", "90 deg", "180 deg", "270 deg"], [-5.0, 3.0, 8.0, -2.0])

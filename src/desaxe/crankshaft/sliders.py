@@ -23,7 +23,8 @@ from ..mechanism.quantity_units import unit_of, units_of_extreme
 from ..mechanism.status import PeakStatus
 from ..runtime.request import is_steady, several
 from ..simulation.checks import check_inertia, drive_of, follows_the_slider, scalar
-from ..simulation.request import Ask, in_time
+from ..simulation.march import Ask
+from ..simulation.request import in_time
 from ..simulation.result import Simulation
 from ..support.answer import Answer
 from .cycle import ShaftCycle, ShaftTurn

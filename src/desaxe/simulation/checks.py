@@ -1,7 +1,7 @@
 """The arguments of `simulate`, read and checked: errors name the argument, the value and the limit."""
 
 from collections.abc import Mapping
-from math import inf, isfinite, isnan, nan, pi
+from math import inf, isnan, nan, pi
 from typing import Any
 
 import numpy as np
@@ -22,12 +22,10 @@ from ..mechanism.spelling import did_you_mean
 from ..runtime.request import several
 from ..support.deadline import Deadline
 from ..support.shown import shown
-from .coordinate import FREE, Coordinate, arc_around, inside
-from .drive import Acting, Actuation, UserFunction
+from .coordinate import arc_around, coordinate_of
+from .drive import ROLES, Acting, Actuation, TorqueDerivative, UserFunction
 from .model import Model
-from .torque_derivative import TorqueDerivative
 
-TIME_AND_CRANK = ("t", "theta", "omega")
 OWN = {"t", "theta", "omega", "alpha", "status"}  # keys of the result that no name may take
 LEAST_RTOL = 3e-14
 SMALL = 1e-4  # rad: so near to a dead centre without inertia no motion is followed
@@ -78,7 +76,7 @@ def follows_the_slider(torque: Any) -> bool:
     """True for a user's function that is called with the slider's position or speed."""
     if not callable(torque) or isinstance(torque, (LoadOverMotion, Motor)):
         return False
-    return not set(arguments_of("torque", torque, ARGUMENTS)) <= set(TIME_AND_CRANK)
+    return not set(arguments_of("torque", torque, ARGUMENTS)) <= set(ROLES)
 
 
 def acting(
@@ -109,29 +107,14 @@ def drive_of(
 def model_of(values: Mapping[str, float], branch: int, theta0: float, drive: Actuation) -> Model:
     """The model of a design in the coordinate of its motion; ValueError if it cannot start at theta0."""
     lengths = tuple(values[name] for name in LENGTHS)
-    arc = arc_around(theta0, *lengths)
-    if arc is None:
-        start = "theta0 = " + amount("theta", theta0, "g")
-        raise ValueError(start + ": it cannot be assembled there; " + _feasible(lengths))
-    if not inside(arc, theta0):
+    coordinate = coordinate_of(values, theta0)
+    if coordinate is None:
+        if arc_around(theta0, *lengths) is None:
+            start = "theta0 = " + amount("theta", theta0, "g")
+            raise ValueError(start + ": it cannot be assembled there; " + _feasible(lengths))
         limit = ": that is a limit angle (S = 0), where no motion can start; "
         raise ValueError("theta0 = " + amount("theta", theta0) + limit + _feasible(lengths))
-    model = Model(values, branch, Coordinate(*arc, 0.0), drive) if isfinite(arc[0] - arc[1]) else None
-    if model is None:
-        model = Model(values, branch, FREE, drive)
-    elif grows(values) and theta_intervals(*lengths) != [(0.0, TURN)]:
-        model = Model(values, branch, Coordinate(*arc, 0.5 * (arc[1] - arc[0])), drive)
-    return model
-
-
-def grows(values: Mapping[str, float]) -> bool:
-    """True if the effective inertia is unbounded at a limit angle.
-
-    There the mass that counts is m_slider BC^2 + m_rod r_rod^2 + I_rod, for the slider moves and the rod
-    turns about the crank pin while the crank stands still.
-    """
-    swings = values["m_rod"] > 0.0 and values.get("r_rod", 1.0) != 0.0
-    return values["m_slider"] > 0.0 or values["I_rod"] > 0.0 or swings
+    return Model(values, branch, coordinate, drive)
 
 
 def _feasible(lengths: tuple[float, ...]) -> Message:

@@ -7,7 +7,8 @@ theta = middle + half sin(q), that is a smooth passage through q = pi/2: dtheta/
 1/sqrt(M_eff) does, and beyond it the branch is the other one.
 """
 
-from math import asin, inf, nextafter, pi, sqrt
+from collections.abc import Mapping
+from math import asin, inf, isfinite, nextafter, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ import numpy as np
 from ..mechanism.closed import TURN
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.closed.limits import LIMITS, theta_intervals
+from ..mechanism.names import LENGTHS
 
 EDGE = 1e-13  # rad: a bounded motion goes on, for the integrator, with what holds just before the limit
 
@@ -61,7 +63,24 @@ class Coordinate(NamedTuple):
         return (-pi / 2, pi / 2) if self.half else (self.first, self.last)
 
 
-FREE = Coordinate(-inf, inf, 0.0)
+def coordinate_of(values: Mapping[str, float], theta0: float) -> Coordinate | None:
+    """The coordinate of a design around a start; None where that is no angle, or a limit angle."""
+    lengths = tuple(values[name] for name in LENGTHS)
+    arc = arc_around(theta0, *lengths)
+    if arc is None or not inside(arc, theta0):
+        return None
+    bent = isfinite(arc[0]) and grows(values) and theta_intervals(*lengths) != [(0.0, TURN)]
+    return Coordinate(*arc, 0.5 * (arc[1] - arc[0]) if bent else 0.0)
+
+
+def grows(values: Mapping[str, float]) -> bool:
+    """True if the effective inertia is unbounded at a limit angle.
+
+    There the mass that counts is m_slider BC^2 + m_rod r_rod^2 + I_rod, for the slider moves and the rod
+    turns about the crank pin while the crank stands still.
+    """
+    swings = values["m_rod"] > 0.0 and values.get("r_rod", 1.0) != 0.0
+    return values["m_slider"] > 0.0 or values["I_rod"] > 0.0 or swings
 
 
 def arc_around(theta: float, ec: float, AB: float, BC: float) -> tuple[float, float] | None:

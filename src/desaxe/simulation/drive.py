@@ -4,7 +4,7 @@ Compiled loops know numbers, tables and motors by their coefficients (`pieces`);
 """
 
 from collections.abc import Callable, Mapping
-from math import isfinite, isnan
+from math import isfinite, isnan, nan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..loads.along_motion import OfMotion, SumOfLoads
 from ..loads.angles import zero_of
-from ..loads.arguments import by_position
+from ..loads.arguments import arguments_of, by_position
 from ..loads.function import FunctionOverTheta
 from ..loads.load import Load, OverTheta, OverY, TableOverTheta
 from ..loads.motors import Motor
@@ -23,10 +23,67 @@ from ..support.checks import real_number
 from ..support.deadline import Deadline
 from ..support.shown import shown
 from .pieces import meeting_angles
-from .torque_derivative import TorqueDerivative
 
 Array = NDArray[np.float64]
+ROLES = ("t", "theta", "omega")
 Lengths = tuple[float, ...]
+
+
+class TorqueDerivative(NamedTuple):
+    """A function of some of t, theta and omega that returns dT/dtheta, dT/domega and, perhaps, dT/dt."""
+
+    function: Callable[..., Any]
+    roles: tuple[str, ...]
+
+    def at(self, t: Any, theta: Any, omega: Any) -> tuple[Any, Any]:
+        """dT/dtheta and dT/domega at instants."""
+        instants = dict(zip(ROLES, np.broadcast_arrays(t, theta, omega), strict=True))
+        rows = zip(*(instants[role].reshape(-1).tolist() for role in self.roles), strict=True)
+        slopes = np.array([self._checked(row)[:2] for row in rows]).T.reshape(2, *np.shape(instants["t"]))
+        return slopes[0], slopes[1]
+
+    def by_time(self, t: float, theta: float, omega: float) -> float:
+        """dT/dt at an instant, if the function returns it as a third number; else NaN."""
+        if "t" not in self.roles:
+            return 0.0
+        instant = dict(zip(ROLES, (t, theta, omega), strict=True))
+        slopes = self._checked(tuple(instant[role] for role in self.roles))
+        return slopes[2] if len(slopes) > 2 else nan
+
+    def _checked(self, row: tuple[float, ...]) -> list[float]:
+        result = self.function(*row)
+        try:
+            slopes = [real_number("derivative", part) for part in result]
+            if len(slopes) not in (2, 3):
+                raise ValueError
+        except (TypeError, ValueError):
+            where = ", ".join(f"{role} = {x:g}" for role, x in zip(self.roles, row, strict=True))
+            raise TypeError(
+                f"derivative gave {shown(result)} at {where}: expected two numbers, dT/dtheta and dT/domega"
+            ) from None
+        if not isfinite(sum(slopes)) and all(map(isfinite, row)):
+            raise ValueError(f"derivative gave {shown(result)}: they must be finite")
+        return slopes
+
+
+def torque_derivative(torque: Any, derivative: Callable[..., Any] | None) -> TorqueDerivative | None:
+    """The derivatives of a torque that does not know its own; TypeError where they are missing."""
+    function = callable(torque) and not isinstance(torque, (Load, Motor))
+    if derivative is None:
+        if function or (isinstance(torque, Load) and not torque.has_slope):
+            raise TypeError(
+                "torque: wrt= of a function needs its derivative: give derivative=, a function of the "
+                "same arguments that returns dT/dtheta and dT/domega"
+            )
+        return None
+    if not function:
+        raise TypeError("derivative: it is for a torque that is a function; tables and motors know theirs")
+    if not callable(derivative):
+        raise TypeError(
+            f"derivative = {shown(derivative)}: expected a function of the arguments of torque that "
+            "returns dT/dtheta and dT/domega"
+        )
+    return TorqueDerivative(by_position(derivative), arguments_of("derivative", derivative, ROLES))
 
 
 class UserFunction:
@@ -47,10 +104,11 @@ class UserFunction:
     def at(self, now: Mapping[str, Any]) -> Any:
         """The values at columns of the motion, one by one."""
         columns = [now[argument].tolist() for argument in self.needs]
+        good = isfinite(sum(map(sum, columns)))
         check, function, result = self.deadline.check, self.function, []
         for row in zip(*columns, strict=True):
             check()
-            result.append(function(*row) if all(map(isfinite, row)) else np.nan)
+            result.append(function(*row) if good or all(map(isfinite, row)) else nan)
         if all(type(value) is float and isfinite(value) for value in result):
             return np.array(result)
         rows = zip(*(column.tolist() for column in now.values()), strict=True)

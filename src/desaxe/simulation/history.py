@@ -11,6 +11,7 @@ from ..evaluation.evaluate import evaluate
 from .checks import LEAST_RTOL
 from .events import Q, W
 from .law import Law, alpha_of, state_of
+from .loops import march
 from .loops.compiled import NODES
 from .march import March
 from .panel import basis
@@ -37,8 +38,8 @@ def integrated(run: March, names: Sequence[str], times: Any, inputs: Mapping[str
         each = () if "sliders" in inputs else zip(FORCES, run.model.drive[1:], strict=True)
         loads = {name: run.model.along(acting, t, state["theta"], state["omega"]) for name, acting in each}
         result |= evaluate(list(names), **{**state, **inputs, **loads})
-    residual, rounded = energy_residual(run)
-    told = told_of(residual, rounded, run.settings.rtol)
+    residual, rounded = map(float, energy_residual(run.sums, run.status == LIMIT, run.steps))
+    told = told_of(residual, rounded, run.ask.rtol)
     return Simulation(
         result, events=run.events, status=run.status, message=run.message + told, energy_residual=residual,
         work=float(run.y[W]), t_last=run.t, method=PANELS, solution=Solution(motion.states, run.t),
@@ -127,25 +128,19 @@ def _set_end(motion: Motion, t: Array, alpha: Array) -> None:
 # ---- the energy residual: where it is unusual, step control was deceived ----------------------------
 
 
-def energy_residual(run: March) -> tuple[float, float]:
+def energy_residual(sums: Array, ends_at_limit: Any, steps: Any) -> tuple[Any, Any]:
     """The energy error relative to the total work or the largest kinetic energy, and that of rounding alone.
 
     max |kinetic + potential - W - initial| over the ends of panels, with the potential energy of the
-    generated quantities.
+    generated quantities; at a limit angle Y has half its digits. sums: see `loops.march`.
     """
-    ends = np.vstack([run.record.y, run.record.last])
-    q, v, work = ends[: -1 if run.status == LIMIT else None].T  # at a limit Y has half its digits
-    kinetic, potential = 0.5 * v * v, run.model.potential(run.model.coordinate.theta(q))
-    known = np.isfinite(kinetic + potential + work)
-    if not known.any():  # energies beyond every double
-        return inf, 0.0
-    kinetic, potential, work = kinetic[known], potential[known], work[known]
-    energy = kinetic + potential
-    residual = float(np.abs(energy - work - energy[0]).max())
-    scale = max(float(np.abs(np.diff(work)).sum()), float(kinetic.max()))
-    if not scale:
-        return 0.0, inf
-    return residual / scale, ROUNDED * (len(work) - 1) * (1.0 + float(np.abs(energy).max()) / scale)
+    off = np.where(ends_at_limit, sums[..., march.BEFORE], sums[..., march.OFF])
+    scale = np.maximum(sums[..., march.DONE], sums[..., march.KINETIC])
+    with np.errstate(all="ignore"):
+        rounded = ROUNDED * steps * (1.0 + sums[..., march.ENERGY] / scale)
+        known = np.isfinite(sums[..., march.ENERGY])  # else beyond every double
+        residual = np.where(scale > 0.0, off / scale, 0.0)
+    return np.where(known, residual, inf), np.where(known, np.where(scale > 0.0, rounded, inf), 0.0)
 
 
 def told_of(residual: Any, rounded: Any, rtol: float) -> str:

@@ -92,11 +92,11 @@ class Law:
         if not isinstance(part, Called):
             return part
 
-        def values(direction: float, rows_at: int, apart: int, count: int) -> None:
-            rows = _memory(rows_at, 3 * apart + count)
-            columns = np.array([rows[k * apart : k * apart + count] for k in range(3)])
-            t, theta, omega = columns[:, :1] if (columns[:, 0] == columns[:, -1]).all() else columns
-            rows[3 * apart :] = part.at(t, theta, omega, direction)
+        def values(direction: float, rows_at: int, _: int, __: int) -> None:
+            rows = _memory(rows_at, 4 * NODES).reshape(4, NODES)
+            instant = rows[0, 0] == rows[0, -1] and rows[1, 0] == rows[1, -1] and rows[2, 0] == rows[2, -1]
+            t, theta, omega = rows[:3, :1] if instant else rows[:3]
+            rows[3] = part.at(t, theta, omega, direction)
 
         needs = set(part.needs)
         varies = float(bool(needs - {"t", "omega"})), float(not needs.isdisjoint({"omega", "V_C"}))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..mechanism.messages import named
 from ..support.computed import computed_once
 from ..support.deadline import Deadline
+from .drive import TorqueDerivative
 from .events import (
     JAM,
     NEVER,
@@ -41,36 +42,36 @@ CHATTER = 6  # standstills in a row, all within a millionth of the time
 RECORDED = ("heads", "records", "ends", "laws")
 
 
-class Settings(NamedTuple):
-    """The relative tolerance, and how many panels are a failure."""
+class Ask(NamedTuple):
+    """The part of a request that all motions of a call share."""
 
+    t_end: float
+    names: tuple[str, ...]
+    branch: int
     rtol: float
     max_steps: int
+    deadline: Deadline
+    wrt: tuple[str, ...]
+    derivative: TorqueDerivative | None
+    until: tuple[float, ...]
 
 
 class March:
     """One motion, from its start to its end."""
 
-    def __init__(
-        self,
-        model: Model,
-        start: tuple[float, float],
-        t_end: float,
-        until: tuple[float, ...],
-        settings: Settings,
-        deadline: Deadline,
-    ) -> None:
-        self.model, self.t_end, self.settings, self.deadline = model, t_end, settings, deadline
+    def __init__(self, model: Model, start: tuple[float, float], ask: Ask) -> None:
+        self.model, self.ask, self.t_end, self.deadline = model, ask, ask.t_end, ask.deadline
         self.start, self.status, self.message = start, NEVER, ""
         self.events: list[Event] = []
         self.steps, self.stills = 0, list[float]()
-        self.marks = marks_of(model, until)
+        self.marks = marks_of(model, ask.until)
         self.law = Law(model)
         self.numbers = self.law.numbers
         self.numbers[[at.THETA0, at.OMEGA_START]] = start
-        self.numbers[at.PROBE] = t_end / march.PROBES if self.law.timed else 0.0
-        self.y, self.clock, self.scales = np.zeros(3), np.zeros(7), np.array([settings.rtol, 0.0, 0.0])
-        self.clock[[panels.T_END, panels.SHARP, panels.LEFT]] = t_end, SHARPEST, 1.0
+        self.numbers[at.PROBE] = self.t_end / march.PROBES if self.law.timed else 0.0
+        self.sums = np.zeros(march.SUMS)
+        self.y, self.clock, self.scales = np.zeros(3), np.zeros(7), np.array([ask.rtol, 0.0, 0.0])
+        self.clock[[panels.T_END, panels.SHARP, panels.LEFT]] = self.t_end, SHARPEST, 1.0
         self.cutting = [mark for mark in self.marks if self._cuts(mark)]
         kinks = np.array([(m.angle, m.every or inf, m.status) for m in self.cutting]).reshape(1, -1, 3)
         known = self.law.known
@@ -78,7 +79,7 @@ class March:
             "law": known.law, "data": known.data, "sheets": known.sheets, "knots": known.knots,
             "kinks": kinks, "table": TABLE, "y": self.y, "clock": self.clock, "scales": self.scales,
             "rows": np.zeros((at.ROWS, NODES)), "matrix": np.empty((2 * NODES, 2 * NODES)),
-            "count": np.zeros(1),
+            "count": np.zeros(1), "sums": self.sums,
         }  # fmt: skip
         self._kept: list[dict[str, Array]] = []
 
@@ -125,9 +126,9 @@ class March:
     def _go_on(self) -> None:
         """Some panels, and what comes after them."""
         self.deadline.check()
-        left = self.settings.max_steps - self.steps
+        left = self.ask.max_steps - self.steps
         if left <= 0:
-            self._fail(f"more than {self.settings.max_steps} steps")
+            self._fail(f"more than {self.ask.max_steps} steps")
             return
         memory, count = records_of(min(left, BRIEF), self.numbers.size), self._arrays["count"]
         count[0] = float(bool(self._kept))

@@ -1,33 +1,17 @@
 """The request of a simulation, and the motion of one design that answers it."""
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ..loads.load import Load
-from ..support.deadline import Deadline
 from .checks import check_inertia, design_values, drive_of, model_of, scalar
 from .history import FORCES, integrated
-from .march import March, Settings
+from .march import Ask, March
 from .model import Model
 from .result import Simulation
 from .slopes import add_slopes
-from .torque_derivative import TorqueDerivative
-
-
-class Ask(NamedTuple):
-    """The part of a request that all motions of a call share."""
-
-    t_end: float
-    names: tuple[str, ...]
-    branch: int
-    rtol: float
-    max_steps: int
-    deadline: Deadline
-    wrt: tuple[str, ...]
-    derivative: TorqueDerivative | None
-    until: tuple[float, ...]
 
 
 def one_motion(ask: Ask, inputs: Mapping[str, Any], starts: Mapping[str, Any], times: Any) -> Simulation:
@@ -57,7 +41,7 @@ def in_time(
     known, loads   its inputs for names, and those that vary with the motion, for derivatives
     """
     with np.errstate(all="ignore"):  # values beyond every double end the motion with a status
-        run = March(model, start, ask.t_end, ask.until, Settings(ask.rtol, ask.max_steps), ask.deadline)
+        run = March(model, start, ask)
         run.to_the_end()
         result = integrated(run, ask.names, times, known)
     if ask.wrt:

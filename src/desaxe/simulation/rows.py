@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
-from math import inf, isfinite, nan
+from math import inf, nan
 from types import MappingProxyType
 from typing import Any
 
@@ -18,27 +18,28 @@ from ..loads.load import Load, OverY
 from ..loads.motors import Motor
 from ..mechanism.closed import TURN
 from ..mechanism.closed.angles import dead_centres
-from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.inputs import LEAST, Input
 from ..mechanism.names import CENTRES, LENGTHS, LOADS, MASSES
 from ..runtime.threads import run_parts
 from ..support.deadline import Deadline
 from ..support.interrupts import stopped_early
 from ..support.progress import Portions, progress_bar
-from .checks import SMALL, TIME_AND_CRANK, follows_the_slider, grows
-from .coordinate import arc_around, inside
-from .drive import Acting
+from .checks import SMALL, follows_the_slider
+from .coordinate import coordinate_of
+from .drive import ROLES, Acting
 from .events import NEVER
-from .history import PANELS, TELLS, told_of
+from .history import PANELS, TELLS, energy_residual, told_of
 from .loops import law
 from .loops.compiled import BRIEF, DesignFamily, loops, records_of, run
-from .loops.motions import designs
+from .loops.march import SUMS
+from .loops.motions import SUMMED, designs
 from .loops.torque import compiled
+from .march import Ask
 from .model import fixed_zeros, form_of
 from .panel import TABLE
 from .pieces import FunctionPieces, LawNumbers, compiles
-from .request import Ask, one_motion
-from .result import DONE, NO_INERTIA, NO_START, SENSITIVITIES, WORDS, Simulation
+from .request import one_motion
+from .result import DONE, LIMIT, NO_INERTIA, NO_START, SENSITIVITIES, WORDS, Simulation
 
 Array = NDArray[np.float64]
 DRIVE = ("torque", "F_Y", "F_X")
@@ -89,11 +90,11 @@ class Answers:
         for name, column in self.numbers.items():
             column[row] = result[name]
 
-    def told(self, rows: Any, numbers: Array) -> None:
-        """Take over the numbers of designs that went together."""
-        self.done[rows], self.rounded[rows] = True, numbers[rows, 3]
-        for name, column in zip(NUMBERS, numbers.T, strict=False):
-            self.numbers[name][rows] = column[rows]
+    def take(self, rows: Any, numbers: Array, rounded: Array) -> None:
+        """Take over the numbers of designs that went together, in the order of NUMBERS."""
+        self.done[rows], self.rounded[rows] = True, rounded
+        for name, column in zip(NUMBERS, numbers.T, strict=True):
+            self.numbers[name][rows] = column
 
     def result(self, shape: tuple[int, ...], rtol: float) -> Simulation:
         """The result in the shape of the designs."""
@@ -189,7 +190,7 @@ def _together(
     code, timed, torque = None, False, varying.get("torque", Motor)
     if not isinstance(torque, (Load, Motor, type)):
         code = compiled(torque)
-        timed = "t" in arguments_of("torque", torque, TIME_AND_CRANK)
+        timed = "t" in arguments_of("torque", torque, ROLES)
     terms: list[tuple[float, float, Any]] = []
     for arm, name in enumerate(DRIVE):
         load = varying.get(name)
@@ -204,20 +205,22 @@ def _together(
     laws.law[:, law.THETA0], laws.law[:, law.OMEGA_START] = flat["theta0"], flat["omega_start"]
     laws.law[:, law.WAITS] = 2.0 if timed else 1.0 if varying else 0.0
     how = np.array([ask.rtol, ask.t_end, ask.max_steps], float)
-    histories, numbers = np.empty((left.size, len(MOTION), answers.t.size)), np.full((answers.size, 4), nan)
-    status, result = answers.status[left], np.full((left.size, 4), nan)
+    histories = np.empty((left.size, len(MOTION), answers.t.size))
+    status, numbers = answers.status[left], np.full((left.size, SUMMED + SUMS), nan)
     known = {
         "law": laws.law,
         "data": laws.data,
         "sheets": laws.sheets,
         "kinks": kinks_of(flat, ask.branch, ask.until),
     }
-    outs = {"history": histories, "status": status, "numbers": result}
+    outs = {"history": histories, "status": status, "numbers": numbers}
     _run({**known, **outs}, {"knots": laws.knots, "times": answers.t, "how": how}, threads, ask.deadline)
     for k, name in enumerate(MOTION):
         answers.histories[name][left] = histories[:, k]
-    answers.status[left], numbers[left] = status, result
-    answers.told(left[status != NO_START], numbers)
+    answers.status[left], moved = status, status != NO_START
+    t_last, work, steps = numbers.T[:SUMMED]
+    residual, rounded = energy_residual(numbers[:, SUMMED:], status == LIMIT, steps)
+    answers.take(left[moved], np.stack([t_last, residual, work], axis=1)[moved], rounded[moved])
 
 
 def kinks_of(flat: Mapping[str, Array], branch: int, until: Sequence[float]) -> Array:
@@ -285,22 +288,13 @@ def arcs_of(flat: Mapping[str, Array]) -> tuple[Array, NDArray[np.int8]]:
             good &= flat[name] >= least
     status[~good] = NO_START
     for row in np.flatnonzero(good & (BC - AB - np.abs(ec) < 1e-12 * (AB + BC))):
-        arc = _arc({name: float(column[row]) for name, column in flat.items()})
-        if arc is None:
+        design = {name: float(column[row]) for name, column in flat.items()}
+        coordinate = coordinate_of(design, design["theta0"])
+        if coordinate is None:
             status[row] = NO_START
         else:
-            arcs[row] = arc
+            arcs[row] = coordinate.half, coordinate.first, coordinate.last
     return arcs, status
-
-
-def _arc(values: Mapping[str, float]) -> tuple[float, float, float] | None:
-    """Half of the arc, where the inertia grows at its ends, and the limit angles around the start."""
-    lengths = tuple(values[name] for name in LENGTHS)
-    arc = arc_around(values["theta0"], *lengths)
-    if arc is None or not inside(arc, values["theta0"]):
-        return None
-    smooth = isfinite(arc[0]) and grows(values) and theta_intervals(*lengths) != [(0.0, TURN)]
-    return 0.5 * (arc[1] - arc[0]) if smooth else 0.0, *arc
 
 
 def _run(

@@ -10,10 +10,11 @@ from ..runtime.request import check_common, check_sliders, with_known_inputs
 from ..support.checks import whole_number
 from ..support.deadline import Deadline
 from .checks import check_names, read_rtol, read_times, read_until, read_wrt, scalar
-from .request import Ask, one_motion
+from .drive import torque_derivative
+from .march import Ask
+from .request import one_motion
 from .result import Simulation
 from .rows import is_array, simulate_rows
-from .torque_derivative import torque_derivative
 
 
 @with_known_inputs

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from ctypes import CFUNCTYPE, c_int64
 from numbers import Integral
-from types import FunctionType
+from types import FunctionType, ModuleType
 from typing import Any, NamedTuple, NoReturn
 
 from ..helpers import mul_add
@@ -317,6 +317,9 @@ class Expressions:
         return self._of_Name(ast.Name(name))
 
     def _of_Attribute(self, node: ast.Attribute) -> LoopValue:
+        module = self.function.__globals__.get(getattr(node.value, "id", ""))
+        if isinstance(module, ModuleType):
+            return self.literal(getattr(module, node.attr), node)
         array = self.value(node.value)
         if node.attr != "shape" or not isinstance(array.kind, Array):
             self.unknown(node)

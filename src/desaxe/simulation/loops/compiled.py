@@ -24,14 +24,14 @@ GUIDE = ("N_C", "N_C_wrt_alpha", "N_C_wrt_omega0", "phi")
 UNLOADED = ("omega", "alpha", "mu", "F_X", "F_Y")
 BRIEF = 64  # panels of a call for one motion, which neither an interrupt nor a deadline stops
 HEAD = 7  # numbers of a panel (see `loops.panels`)
-KINDS = {  # of the arguments of `motions.single` and `motions.designs`
-    **{"work": "f64", "law": "f64[2]", "data": "f64[2]", "kinks": "f64[3]", "knots": "f64[1]"},
-    **{"sheets": "f64[3]", "table": "f64[2]", "y": "f64[1]", "clock": "f64[1]", "scales": "f64[1]"},
-    **{"rows": "f64[2]", "matrix": "f64[2]", "heads": "f64[2]", "records": "f64[3]", "ends": "f64[2]"},
-    **{"laws": "f64[2]", "count": "f64[1]", "which": "f64[1]", "t": "f64[1]", "q": "f64[1]", "v": "f64[1]"},
-    **{"out": "f64[2]", "times": "f64[1]", "how": "f64[1]", "history": "f64[3]", "status": "i8[1]"},
-    "numbers": "f64[2]",
+_BY_KIND = {
+    "f64": "work",
+    "i8[1]": "status",
+    "f64[1]": "knots y clock scales count sums which t q v times how",
+    "f64[2]": "law data table rows matrix heads ends laws out numbers",
+    "f64[3]": "kinks sheets records history",
 }
+KINDS = {name: kind for kind, names in _BY_KIND.items() for name in names.split()}  # of `motions`
 _NONE = {f"f64[{axes}]": np.empty((0,) * axes) for axes in (1, 2, 3)} | {"i8[1]": np.empty(0, np.int8)}
 
 

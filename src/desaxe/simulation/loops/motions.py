@@ -6,73 +6,23 @@ history  rows of angles, speeds and accelerations
 
 from __future__ import annotations
 
-from math import inf, nan
+from math import nan
 from typing import TYPE_CHECKING
 
 from numpy import empty, int64, zeros
 
+from . import law as layout
 from .cuts import JAMMED, KINK, LIMIT
-from .law import (
-    ANGLE,
-    FIRST,
-    LAST,
-    OMEGA_START,
-    POTENTIAL,
-    ROWS,
-    SPEED,
-    THETA0,
-    TIME,
-    acceleration,
-    law_at,
-    place,
-    still_at,
-    values,
-)  # fmt: skip
-from .march import CUT, RESTING, RESTS, UNMOVED, advance
+from .law import acceleration, law_at, place, values
+from .march import CUT, RESTING, RESTS, SUMS, UNMOVED, advance
 from .panels import GOES_ON, LEFT, SHARP, T_END, T, value
 
 if TYPE_CHECKING:
     from typing import Any
 
 PANELS, LAW = 0.0, 1.0  # what the entry for one motion does
+SUMMED = 3  # of the numbers of a design: the first of its sums
 SHARPEST = 3e-11  # of a radian: a limit angle cannot be told better
-
-
-def told(status: Any, t: float, steps: Any, y: Any, law: Any, sums: Any, numbers: Any) -> Any:
-    """The numbers of a motion; the status of its end."""
-    residual = sums[4] if status == 2 else sums[3]  # at a limit angle Y has half its digits
-    if status < 0:
-        theta = place(y[0], law)
-        # a load on a massless slider grows without bound at a limit angle
-        status = 2 if min(law[LAST] - theta, theta - law[FIRST]) < 1e-3 else 4
-    scale = max(sums[1], sums[2])
-    numbers[0], numbers[2] = t, y[2]
-    if scale > 0.0:
-        numbers[1], numbers[3] = residual / scale, 2e-17 * steps * (1.0 + sums[5] / scale)  # see `residual`
-    else:
-        numbers[1], numbers[3] = 0.0, inf
-    return status
-
-
-def account(y: Any, law: Any, data: Any, rows: Any, sums: Any) -> None:
-    """Take a state into account.
-
-    sums: first energy, work done either way, largest kinetic energy, residual now and before, largest energy,
-    work so far.
-    """
-    state, angles = empty(32), empty(16)
-    for i in range(16):
-        state[i] = y[0]
-    still_at(state, law, data, rows, angles)
-    energy = 0.5 * y[1] * y[1] + rows[POTENTIAL, 0]
-    if sums[5] < 0.0:
-        sums[0] = energy
-    off = abs(energy - y[2] - sums[0])
-    sums[1] += abs(y[2] - sums[6])
-    sums[2] = max(sums[2], 0.5 * y[1] * y[1])
-    sums[4] = sums[3]
-    sums[3] = max(sums[3], off) if off == off else sums[3]
-    sums[5], sums[6] = max(sums[5], abs(energy)), y[2]
 
 
 def tell(
@@ -86,12 +36,12 @@ def tell(
         while last + 1 < len(times) and last < row + 15 and times[last + 1] <= head[6]:
             last += 1
         for i in range(16):
-            rows[TIME, i] = times[row + i if row + i < last else last]
-            s = (rows[TIME, i] - head[0]) / h
+            rows[layout.TIME, i] = times[row + i if row + i < last else last]
+            s = (rows[layout.TIME, i] - head[0]) / h
             state[i], state[16 + i] = value(series[0], head[3], s), value(series[1], head[4], s)
         law_at(state, law, data, rows, 0)
         for k in range(row, last + 1):
-            history[0, k], history[1, k] = rows[ANGLE, k - row], rows[SPEED, k - row]
+            history[0, k], history[1, k] = rows[layout.ANGLE, k - row], rows[layout.SPEED, k - row]
             history[2, k] = 0.0 if resting else acceleration(rows, k - row)
         row = last + 1
     return row
@@ -115,10 +65,10 @@ def follow(
     records: Any, ends: Any, laws: Any, history: Any, numbers: Any,
 ) -> Any:  # fmt: skip
     """The motion of one design: its status."""
-    y, scales, clock, sums, count = empty(3), zeros(3), zeros(7), zeros(7), zeros(1)
-    rows, matrix = zeros((ROWS, 16)), empty((32, 32))
+    y, scales, clock, sums, count = empty(3), zeros(3), zeros(7), zeros(SUMS), zeros(1)
+    rows, matrix = zeros((layout.ROWS, 16)), empty((32, 32))
     history[:] = nan
-    scales[0], clock[T_END], clock[SHARP], clock[LEFT], sums[5] = how[0], how[1], SHARPEST, 1.0, -1.0
+    scales[0], clock[T_END], clock[SHARP], clock[LEFT] = how[0], how[1], SHARPEST, 1.0
     row: Any = 0
     steps: Any = 0
     status: Any = -1
@@ -126,14 +76,11 @@ def follow(
         most = int64(min(len(heads) * 1.0, how[2] - steps + 1.0))
         code = advance(
             y, clock, scales, kinks, knots, sheets, law, data, table, rows, matrix, heads[0:most], records,
-            ends, laws, count,
+            ends, laws, count, sums,
         )  # fmt: skip
         made = int64(count[0])
         for k in range(1, made + 1):
-            if sums[5] < 0.0:
-                account(heads[1, 3:6], law, data, rows, sums)
             row = tell(heads[k], records[k], ends[k, 0] == RESTING, times, row, laws[k], data, rows, history)
-            account(heads[k + 1, 3:6] if k < made else y, laws[k], data, rows, sums)
         steps += made
         status = end_of(code, ends[made], kinks)
         if status == -1 and clock[T] >= how[1]:
@@ -146,20 +93,27 @@ def follow(
         count[0] = 1.0
     for k in range(len(times)):
         if times[k] == 0.0 and row > 0:
-            history[0, k], history[1, k] = law[THETA0], law[OMEGA_START]
-    return status if status == 6 else told(status, clock[T], steps, y, law, sums, numbers)
+            history[0, k], history[1, k] = law[layout.THETA0], law[layout.OMEGA_START]
+    if status < 0:  # a load on a massless slider grows without bound at a limit angle
+        theta = place(y[0], law)
+        status = 2 if min(law[layout.LAST] - theta, theta - law[layout.FIRST]) < 1e-3 else 4
+    if status != 6:
+        numbers[0], numbers[1], numbers[2] = clock[T], y[2], steps
+        for k in range(SUMS):
+            numbers[SUMMED + k] = sums[k]
+    return status
 
 
 def single(
     work: float, law: Any, data: Any, kinks: Any, knots: Any, sheets: Any, table: Any, y: Any, clock: Any,
     scales: Any, rows: Any, matrix: Any, heads: Any, records: Any, ends: Any, laws: Any, count: Any,
-    which: Any, t: Any, q: Any, v: Any, out: Any,
+    sums: Any, which: Any, t: Any, q: Any, v: Any, out: Any,
 ) -> int:  # fmt: skip
     """Panels of one motion, or the law at instants of it."""
     if work == PANELS:
         return advance(
             y, clock, scales, kinks[0], knots, sheets[0], law[0], data[0], table, rows, matrix, heads,
-            records, ends, laws, count,
+            records, ends, laws, count, sums,
         )  # fmt: skip
     return values(laws, which, t, q, v, data[0], out)
 
@@ -168,11 +122,10 @@ def designs(
     law: Any, data: Any, kinks: Any, knots: Any, sheets: Any, table: Any, heads: Any, records: Any, ends: Any,
     laws: Any, times: Any, how: Any, history: Any, status: Any, numbers: Any,
 ) -> None:  # fmt: skip
-    """Every design: histories, status, and end, energy residual, work and its rounding as numbers."""
+    """Every design: histories, status, and numbers: instant of the end, work, panels, sums (see `march`)."""
     for n in range(len(law)):
         if status[n] < 0:
-            for k in range(4):
-                numbers[n, k] = nan
+            numbers[n, :] = nan
             status[n] = follow(
                 law[n], data[n], kinks[n], knots, sheets[n], times, how, table, heads, records, ends, laws,
                 history[n], numbers[n],

@@ -24,7 +24,6 @@ RUNNING, SERIES, TAILS, ENDS, POINTS, ACROSS = 1, 17, 34, 36, 38, 54  # rows of 
 ITERATIONS = 14
 SLOW = 0.1  # of the step before: then the matrix is made anew
 SMALL_PIVOT = 0.5  # of a matrix that differs from 1 by the length of a panel: below it rows are exchanged
-CALM = 0.02  # of a coordinate, by a panel: then steps without a matrix do
 BLUR = 4e-16  # over cos(q)^2: the rounding of the rates next to a limit angle
 ROUNDING = 4e-15  # of the size of a coordinate
 DEVIATES = 30.0  # tolerances: by so much a rate differs where nodes have missed a jump
@@ -111,15 +110,6 @@ def solve(upper: Any, lower: Any, order: Any, x: Any) -> None:
         x[k], x[best] = x[best], x[k]
 
 
-def calm(h: float, rows: Any) -> bool:
-    """True where a panel is so short that what it changes hardly acts on its rates."""
-    most = 0.0
-    for i in range(16):
-        across = h * h * abs(rows[Q_BY_V, i] * rows[V_BY_Q, i])
-        most = max(most, h * abs(rows[Q_BY_Q, i]) + h * abs(rows[V_BY_V, i]) + across)
-    return most < CALM
-
-
 def newton(
     t: float, h: float, y: Any, state: Any, scales: Any, law: Any, data: Any, table: Any, rows: Any,
     matrix: Any, series: Any,
@@ -128,7 +118,7 @@ def newton(
     order: Any = empty(32)
     miss: Any = empty(32)
     lower: Any = empty((32, 32))
-    aim, before, made, simple = max(0.02 * scales[0], ROUNDING), inf, False, False
+    aim, before, made = max(0.02 * scales[0], ROUNDING), inf, False
     radian = max(1.0, abs(y[0]))
     for i in range(16):
         rows[TIME, i] = t + h * table[0, i]
@@ -140,13 +130,11 @@ def newton(
             miss[i] = y[0] - state[i] + h * product(table[RUNNING + i], rows[RATE_Q])
             miss[16 + i] = y[1] - state[16 + i] + h * product(table[RUNNING + i], rows[RATE_V])
         if not made:
-            made, simple = True, calm(h, rows)
-            if not simple:
-                fill_matrix(h, rows, table, matrix)
-                if not factor(matrix, lower, order):
-                    return -1.0
-        if not simple:
-            solve(matrix, lower, order, miss)
+            made = True
+            fill_matrix(h, rows, table, matrix)
+            if not factor(matrix, lower, order):
+                return -1.0
+        solve(matrix, lower, order, miss)
         top, far, fast, total = scales[1], 0.0, 0.0, 0.0
         for i in range(16):
             top = max(top, abs(state[16 + i]))

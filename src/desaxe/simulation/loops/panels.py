@@ -16,24 +16,8 @@ from typing import TYPE_CHECKING
 from numpy import empty, int64, nextafter
 
 from ...compiler.llvm.loops import apart
-from .law import (
-    ANGLE,
-    CALLS,
-    COUNT,
-    CURVED,
-    END,
-    HALF,
-    PROBE,
-    RATE_Q,
-    RATE_V,
-    ROWS,
-    STOP,
-    TERM,
-    TERMS,
-    TIME,
-    law_at,
-    motion,
-)  # fmt: skip
+from . import law as layout
+from .law import law_at, motion
 from .newton import DEVIATES, ENDS, POINTS, TAIL, newton, product
 
 if TYPE_CHECKING:
@@ -64,7 +48,7 @@ def value(series: Any, start: float, s: float) -> float:
 def guess(t: float, h: float, y: Any, last: Any, series: Any, table: Any, rows: Any, state: Any) -> None:
     """The state at the nodes, by the panel before; by the rates if that has no length."""
     if last[1] == 0.0:
-        speed, rate, bend = rows[RATE_Q, 0], rows[RATE_V, 0], rows[CURVED, 0]
+        speed, rate, bend = rows[layout.RATE_Q, 0], rows[layout.RATE_V, 0], rows[layout.CURVED, 0]
         for i in range(16):
             s = h * table[0, i]
             state[i] = y[0] + speed * s + (0.5 * bend * s * s if speed == 0.0 else 0.0)
@@ -119,8 +103,8 @@ def next_kink(theta: float, way: float, least: float, kinks: Any, law: Any) -> A
     The first is one that ends it; the row is -1 where the piece of a load ends.
     """
     best, row, ends, angle = inf, -1, False, 0.0
-    for k in range(int64(law[COUNT])):
-        end = law[TERMS + TERM * k + END]
+    for k in range(int64(law[layout.COUNT])):
+        end = law[layout.TERMS + layout.TERM * k + layout.END]
         gap = (end - theta) * way
         if gap > 0.0 and gap < best:
             best, angle = gap, end
@@ -135,15 +119,15 @@ def next_kink(theta: float, way: float, least: float, kinks: Any, law: Any) -> A
 
 def until_cut(y: Any, law: Any, kinks: Any, rows: Any) -> float:
     """The time to a little behind the next angle that cuts the motion, or to before a limit angle."""
-    speed, bend, theta = rows[RATE_Q, 0], rows[CURVED, 0], rows[ANGLE, 0]
+    speed, bend, theta = rows[layout.RATE_Q, 0], rows[layout.CURVED, 0], rows[layout.ANGLE, 0]
     way = copysign(1.0, speed if speed != 0.0 else bend)
     shortest = inf
-    if law[HALF] > 0.0:
+    if law[layout.HALF] > 0.0:
         shortest = 0.95 * time_over(0.5 * pi - y[0] * way, speed * way, bend * way)
     else:
         gap, _, _ = next_kink(theta, way, NEAR, kinks, law)
         if gap < inf:
-            beyond = ABOUT if law[CALLS] == 2.0 else BEHIND
+            beyond = ABOUT if law[layout.CALLS] == 2.0 else BEHIND
             shortest = beyond * time_over(gap, speed * way, bend * way)
     return shortest if shortest > 0.0 else inf
 
@@ -182,16 +166,16 @@ def jumps(
     t: float, h: float, y: Any, scales: Any, law: Any, data: Any, table: Any, rows: Any, series: Any
 ) -> bool:  # fmt: skip
     """True where a function jumps between an end of a panel and the node next to it, which no node sees."""
-    still, end, other = empty(32), empty(3), empty((ROWS, 16))
-    first, last = product(table[ENDS], rows[RATE_V]), product(table[ENDS + 1], rows[RATE_V])
+    still, end, other = empty(32), empty(3), empty((layout.ROWS, 16))
+    first, last = product(table[ENDS], rows[layout.RATE_V]), product(table[ENDS + 1], rows[layout.RATE_V])
     for k in range(3):
         end[k] = value(series[k], y[k], 1.0)
     if motion(t, y, law, data, other, still) != 0:
         return True
-    first -= other[RATE_V, 0]
+    first -= other[layout.RATE_V, 0]
     if motion(t + h, end, law, data, other, still) != 0:
         return True
-    worst = max(abs(first), abs(last - other[RATE_V, 0]))
+    worst = max(abs(first), abs(last - other[layout.RATE_V, 0]))
     return bool(h * worst > DEVIATES * TAIL * scales[0] * scales[2])
 
 
@@ -199,23 +183,23 @@ def missed(
     t: float, h: float, y: Any, scales: Any, law: Any, data: Any, table: Any, rows: Any, series: Any
 ) -> float:  # fmt: skip
     """A shorter length for a panel whose nodes have missed what a function does in time; 0 for none."""
-    every, state, other, rates = law[PROBE], empty(32), empty((ROWS, 16)), empty(17)
+    every, state, other, rates = law[layout.PROBE], empty(32), empty((layout.ROWS, 16)), empty(17)
     for j in range(16):
-        rates[j] = product(table[POINTS + j], rows[RATE_V])
+        rates[j] = product(table[POINTS + j], rows[layout.RATE_V])
     rates[16] = 0.0
     k, last = floor(t / every) + 1.0, (t + h) / every
     while k < last:
         for i in range(16):
-            other[TIME, i] = every * min(k + i, max(k, floor(last) - (floor(last) == last)))
-            s = (other[TIME, i] - t) / h
+            other[layout.TIME, i] = every * min(k + i, max(k, floor(last) - (floor(last) == last)))
+            s = (other[layout.TIME, i] - t) / h
             state[i], state[16 + i] = value(series[0], y[0], s), value(series[1], y[1], s)
         if law_at(state, law, data, other, 0) != 0:
             return 0.0
         for i in range(16):
-            s = (other[TIME, i] - t) / h
-            off = h * abs(other[RATE_V, i] - value(rates, 0.0, s))
+            s = (other[layout.TIME, i] - t) / h
+            off = h * abs(other[layout.RATE_V, i] - value(rates, 0.0, s))
             if off > DEVIATES * TAIL * scales[0] * max(scales[1], abs(state[16 + i])):
-                return float(max(other[TIME, i] - t - every, 0.5 * (other[TIME, i] - t)))
+                return float(max(other[layout.TIME, i] - t - every, 0.5 * (other[layout.TIME, i] - t)))
         k += 16.0
     return 0.0
 
@@ -226,24 +210,24 @@ def one(
 ) -> int:  # fmt: skip
     """The longest panel that the tolerance allows: GOES_ON, FAILED or STOPPED."""
     state: Any = empty(32)
-    t, bends = clock[T], law[HALF] > 0.0 or len(kinks) > 0 or len(sheets) > 0
+    t, bends = clock[T], law[layout.HALF] > 0.0 or len(kinks) > 0 or len(sheets) > 0
     if bends or last[1] == 0.0 or clock[WISH] == 0.0:
         code = motion(t, y, law, data, rows, state)
-        if code == STOP:
+        if code == layout.STOP:
             return STOPPED
         if code != 0:
             return FAILED
     limited, wish = until_cut(y, law, kinks, rows) if bends else inf, clock[WISH]
     if wish == 0.0:
-        speed, bend = abs(rows[RATE_Q, 0]), abs(rows[CURVED, 0])
+        speed, bend = abs(rows[layout.RATE_Q, 0]), abs(rows[layout.CURVED, 0])
         wish = min(1.0 / speed if speed > 0.0 else inf, sqrt(2.0 / bend) if bend > 0.0 else inf, clock[T_END])
     h, least = min(wish, limited, clock[T_END] - t), 10.0 * (nextafter(t, inf) - t)
     while h >= least:
-        if last[1] == 0.0 and motion(t, y, law, data, rows, state) == STOP:
+        if last[1] == 0.0 and motion(t, y, law, data, rows, state) == layout.STOP:
             return STOPPED
         guess(t, h, y, last, before, table, rows, state)
         error = newton(t, h, y, state, scales, law, data, table, rows, matrix, series)
-        if error == -float(STOP):
+        if error == -float(layout.STOP):
             return STOPPED
         if error < 0.0:
             h *= 0.3
@@ -253,14 +237,14 @@ def one(
         if error > 1.0 or turned > MOST:
             h *= max(0.1, min(0.7, factor, 0.5 * MOST / turned if turned > 0.0 else inf))
             continue
-        if law[HALF] > 0.0 and blurs(error, h, y, law, clock, scales[0], series):
+        if law[layout.HALF] > 0.0 and blurs(error, h, y, law, clock, scales[0], series):
             h *= 0.5
             continue
-        shorter = missed(t, h, y, scales, law, data, table, rows, series) if law[PROBE] > 0.0 else 0.0
+        shorter = missed(t, h, y, scales, law, data, table, rows, series) if law[layout.PROBE] > 0.0 else 0.0
         if shorter > 0.0:
             h = shorter
             continue
-        if law[CALLS] > 0.0 and jumps(t, h, y, scales, law, data, table, rows, series):
+        if law[layout.CALLS] > 0.0 and jumps(t, h, y, scales, law, data, table, rows, series):
             h *= 0.5
             continue
         grown = h * min(GROWTH, max(factor, 0.5))

@@ -12,7 +12,7 @@ import numpy as np
 from ...loads.arguments import arguments_of
 from ...support.forks import IMPORTS, ForkSafeLock, imported
 from ...support.signals import finished
-from ..checks import TIME_AND_CRANK
+from ..drive import ROLES
 
 PLAIN = (bool, int, float, complex, str, bytes, type(None), np.generic)
 CONSTANT = (BuiltinFunctionType, np.ufunc, type)
@@ -56,7 +56,7 @@ def _compiled(torque: Callable[..., Any]) -> Any:
         from numba.core.errors import NumbaError
 
     numba: Any = imported("numba")
-    arguments = arguments_of("torque", getattr(torque, "py_func", torque), TIME_AND_CRANK)
+    arguments = arguments_of("torque", getattr(torque, "py_func", torque), ROLES)
     try:
         fast = _fast(torque, arguments)
     except (NumbaError, TypeError) as error:
@@ -66,7 +66,7 @@ def _compiled(torque: Callable[..., Any]) -> Any:
             "torque: for many designs at once numba must be able to compile the function, and it cannot: "
             f"{why.strip()}; use numbers and math in it, or simulate one design at a time"
         ) from None
-    passed = ", ".join(f"rows[{TIME_AND_CRANK.index(argument)} * apart + i]" for argument in arguments)
+    passed = ", ".join(f"rows[{ROLES.index(argument)} * apart + i]" for argument in arguments)
     scope: dict[str, Any] = {"fast": fast, "carray": numba.carray}
     exec(_LOOP.format(passed), scope)
     types = numba.types
