@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.along_motion import OfMotion
 from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.quantity_units import SI, UnitSystem
 from ..support.shown import printed
@@ -18,7 +17,6 @@ SIZE = (7.0, 3.6)  # inches
 NODES = 1001  # of a curve, beside those on both sides of each point
 STYLES: tuple[dict[str, Any], ...] = ({"color": BLUE}, {"color": ORANGE, "linestyle": "--"})
 BEYOND = 0.08  # of the range of positions: so far it is shown how the values at the ends hold
-Curves = tuple[Array, dict[str, Array], Array]  # abscissae, curves by name, abscissae of points
 
 
 def load(
@@ -40,75 +38,55 @@ def load(
     """
     axes = axes_of("load", ax, SIZE)
     units = units or load.shown_in or SI
-    force = load.values_in(units)
+    force, column = load.values_in(units), units.of(load.needs[0])
+    points = np.array([x for table in load.tables for x in table.knots])
+    points = points % load.period if isinstance(load, OverTheta) else points
     values = np.array([y for table in load.tables for y in table.values])
-    along: Any
+    nodes = _nodes(load, points, None if over is None else [float(column.to_si(end)) for end in over])
+    along: Any = column.shown
+    label = f"{load.place.removeprefix('the ')} [{printed(column.unit)}]"
     if isinstance(load, OverTheta):
         along, label = np.degrees, "crank angle, theta [deg]"
-        abscissae, curves, points = _over_theta(load)
         angle_ticks(axes.xaxis)
-    elif isinstance(load, OverY):
-        along, label = units.of("Y").shown, f"{load.place.removeprefix('the ')} [{units.of('Y').unit}]"
-        abscissae, curves, points = _over_position(load)
-    else:
-        assert isinstance(load, OfMotion)
-        column = units.of(load.needs[0])
-        along, label = column.shown, f"{load.over} [{printed(column.unit)}]"
-        abscissae, curves, points = _over_column(load, None if over is None else [*map(column.to_si, over)])
-        values = _at(load, points) if points.size else points
+    ways = {"outward": 1.0, "inward": -1.0} if len(load.tables) > 1 else {"load": 1.0}
     lines: dict[str, Any] = {}
-    for (name, curve), style in zip(curves.items(), STYLES, strict=False):
-        (lines[name],) = axes.plot(along(abscissae), force.shown(curve), linewidth=1.6, label=name, **style)
+    for (name, way), style in zip(ways.items(), STYLES, strict=False):
+        curve = along(nodes), force.shown(_values(load, nodes, way))
+        (lines[name],) = axes.plot(*curve, linewidth=1.6, label=name, **style)
     if points.size:
         at = along(points), force.shown(values)
         (lines["points"],) = axes.plot(*at, "o", color="0.25", markersize=4)
-    axes.set(xlabel=label, ylabel=f"load [{printed(force.unit)}]", xlim=tuple(along(abscissae[[0, -1]])))
+    axes.set(xlabel=label, ylabel=f"load [{printed(force.unit)}]", xlim=tuple(along(nodes[[0, -1]])))
     head(axes, load.told(force)[1:-1], wrap=True)
-    if len(curves) > 1:
+    if len(ways) > 1:
         axes.legend(frameon=False, fontsize="small")
     finish(axes)
     return Picture(axes, lines)
 
 
-def _over_theta(load: OverTheta) -> Curves:
-    """A load over one period from 0, in SI units."""
-    knots = np.array([x for table in load.tables for x in table.knots]) % load.period
-    abscissae = _nodes(0.0, load.period, np.append(knots, load.nodes(0.0, load.period, False)))
-    return abscissae, {"load": load.value(abscissae)}, knots
-
-
-def _over_position(load: OverY) -> Curves:
-    """A load over the range of its positions and a little beyond, each way of the slider, in SI units."""
-    knots = np.array(load.outward.knots)
-    margin = BEYOND * (knots[-1] - knots[0])
-    abscissae = _nodes(max(knots[0] - margin, 0.0 if load.centre else -inf), knots[-1] + margin, knots)
-    ways = {"load": 1.0} if load.inward is None else {"outward": 1.0, "inward": -1.0}
-    curves = {name: load.value(abscissae, way) for name, way in ways.items()}
-    return abscissae, curves, np.tile(knots, len(load.tables))
-
-
-def _over_column(load: OfMotion, over: list[float] | None) -> Curves:
-    """A load over the slider's position or speed, in SI units."""
-    if len(load.needs) > 1:
-        raise TypeError(
-            f"{load!r} depends on {', '.join(load.needs)}: a picture is of a load over one of them"
-        )
-    knots = np.array(load.speeds if load.tables else [])
-    if over is None and not knots.size:
-        raise TypeError(f"plot.load: over=(low, high) is missing, the range of {load.over} to draw")
-    margin = BEYOND * np.ptp(knots) if knots.size else 0.0
-    low, high = (knots[0] - margin, knots[-1] + margin) if over is None else over
-    abscissae = _nodes(float(low), float(high), knots)
-    return abscissae, {"load": _at(load, abscissae)}, knots
-
-
-def _at(load: OfMotion, column: Array) -> Array:
-    """The values of a load at those of its one column."""
+def _values(load: Load, column: Array, way: float) -> Array:
+    """The load at values of the column that it is over, for a slider that goes one way."""
+    if isinstance(load, (OverTheta, OverY)):
+        both = (column,) if isinstance(load, OverTheta) else (column, way)
+        return np.asarray(load.value(*both))
     return np.asarray(load.partials({load.needs[0]: column}).value)
 
 
-def _nodes(low: float, high: float, knots: Array) -> Array:
-    """Abscissae between two ends, those on both sides of each knot among them, where it may jump."""
-    sides = np.concatenate([np.nextafter(knots, -inf), knots, np.nextafter(knots, inf)])
+def _nodes(load: Load, points: Array, over: list[float] | None) -> Array:
+    """Abscissae of a curve in SI units, those on both sides of each point among them, where it may jump."""
+    if isinstance(load, OverTheta):
+        low, high, points = 0.0, load.period, np.append(points, load.nodes(0.0, load.period, False))
+    elif not isinstance(load, OverY) and len(load.needs) > 1:
+        needs = ", ".join(load.needs)
+        raise TypeError(f"{load!r} depends on {needs}: a picture is of a load over one of them")
+    elif over is not None:
+        low, high = over
+    elif points.size:
+        margin = BEYOND * float(np.ptp(points))
+        low = max(float(points.min()) - margin, 0.0 if load.centre else -inf)
+        high = float(points.max()) + margin
+    else:
+        raise TypeError(f"plot.load: over=(low, high) is missing, the range of {load.over} to draw")
+    sides = np.concatenate([np.nextafter(points, -inf), points, np.nextafter(points, inf)])
     nodes: Array = np.unique(np.clip(np.concatenate([np.linspace(low, high, NODES), sides]), low, high))
     return nodes

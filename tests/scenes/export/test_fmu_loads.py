@@ -177,6 +177,28 @@ def test_model_exchange_without_tables_over_a_long_run(tmp_path):
         assert result[each] == pytest.approx(expected[each][-1], rel=1e-8), each
 
 
+@pytest.mark.thorough
+def test_loads_along_both_axes_with_friction(tmp_path):
+    """Co-simulation and model exchange to 1e-8 beside `simulate`."""
+    loads = {
+        "F_X": dx.spring(300.0, free=0.1) - LOADS["over V"],
+        "F_Y": LOADS["damper"] + dx.over_Y([0.08, 0.1, 0.13], [-6.0, -3.0, -1.0], [0.0, 9.0, 2.0]),
+    }
+    scene = content(outputs=OUTPUTS, loads={"g_Y": -9.81, "mu": 0.1, **loads})
+    place = str(dx.compile(scene, tmp_path / "press.fmu", to="fmu"))
+    start = {"torque": 1.5, "omega_start": 5.0}
+    result = simulated(place, "CoSimulation", 0.1, 0.02, ["theta", "omega", *OUTPUTS], **start)
+    expected = dx.simulate(
+        torque=1.5, t_end=0.1, theta0=0.3, omega_start=5.0, times=result["time"], names=OUTPUTS, rtol=1e-12,
+        **LENGTHS, **MASSES, g_Y=-9.81, mu=0.1, **loads,
+    )  # fmt: skip
+    last, _ = follow(place, start, 0.1)
+    for each in ("theta", "omega", *OUTPUTS):
+        scale = np.abs(expected[each]).max()
+        np.testing.assert_allclose(result[each], expected[each], rtol=0, atol=1e-8 * scale, err_msg=each)
+        assert last[each] == pytest.approx(expected[each][-1], abs=1e-8 * scale), each
+
+
 @pytest.mark.parametrize("name", ["sum", pytest.param("over Y", marks=pytest.mark.thorough)])
 def test_a_given_speed_has_the_load_of_the_angle(name, made):
     place, names = made(name, input="omega"), ["theta", "T_in", "N_C"]
