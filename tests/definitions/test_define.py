@@ -90,7 +90,8 @@ def test_arrays_are_as_points():
 
 
 @pytest.mark.parametrize(
-    "expression", ["max(V_C, 0)", "min(0, V_C)", "where(V_C > 0, 1, 2)", "2 * phi", "abs(V_C)"]
+    "expression",
+    ["max(V_C, 0)", "min(0, V_C)", "where(V_C > 0, 1, 2)", "where(V_C != 0, 1, 2)", "2 * phi", "abs(V_C)"],
 )
 def test_what_does_not_exist_is_nan(expression):
     with defined("own", expression):

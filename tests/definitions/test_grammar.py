@@ -113,7 +113,8 @@ LEAVES = ("1", "2.5", ".5", "3.", "4e-1", "phi", "theta", "pi", "k")
 FORMS = (
     "{}+{}", "{} - {}", "{}*-{}", "{}\n/ (2 + abs({}))", "({} )", "-{}", "+--{}", "-sin({})**2",
     "2**-sin({})**3", "abs({})**.5", "hypot({}, {})", "min({},{}, 1)", "where({} <= {}, {}, 0)",
-    "k - {} - (({}) - {})",
+    "k - {} - (({}) - {})", "where({} > {}, {}, 1)", "where({} >= {}, {}, 2)", "where({} != {}, {}, 3)",
+    "where({} == {}, 4, {})", "max({}, {}, -1)",
 )  # fmt: skip
 
 
@@ -128,8 +129,9 @@ def test_arithmetic_means_what_it_means_in_python(seed):
     text = f"0*phi + k*({expression(random.Random(seed), 3)})"
     with defined("own", text, k=0.7):
         result = dx.evaluate(["own", "phi"], theta=1.1, ec=0.01, AB=0.125, BC=0.35)
-    scope = {"phi": result["phi"], "theta": 1.1, "k": 0.7, "abs": abs, "min": min, "hypot": math.hypot}
-    scope |= {"sin": math.sin, "pi": math.pi, "where": lambda test, yes, no: yes if test else no}
+    scope = {"phi": result["phi"], "theta": 1.1, "k": 0.7, "abs": abs, "min": min, "max": max}
+    scope |= {"sin": math.sin, "hypot": math.hypot, "pi": math.pi}
+    scope |= {"where": lambda test, yes, no: yes if test else no}
     assert result["own"] == pytest.approx(eval(text.replace("\n", ""), scope), rel=1e-13, abs=1e-13), text
 
 
