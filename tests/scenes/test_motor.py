@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe.cli.command import main
 from desaxe.scenes.scene import SceneError
+from desaxe.scenes.written import toml
 
 KLOSS = {"breakdown_torque": 40, "breakdown_slip": 0.15, "synchronous_speed": 1500, "gear": 12}
 LOAD = {"over_Y": [[150, -4000, 3000], [200, -2000, 0], [250, 0, 0]]}
@@ -69,6 +71,18 @@ def test_a_motor_of_points_and_a_number():
     assert weak.steady.dataset["status"] == 1
     assert "too weak" in weak.report()
     assert "On 3 N m." in weak.report()
+
+
+def test_a_refusal_is_in_the_units_of_the_scene_whoever_runs_it(tmp_path, capsys):
+    push = {"over_theta": [[0, 0], [100, -5], [400, 3]], "kind": "linear", "period": 500}
+    scene = {**SCENE, "units": "mm, deg, rpm", "loads": {"F_Y": push}}
+    with pytest.raises(ValueError, match="its period is 500 deg"):
+        dx.scene(scene).run()
+    (tmp_path / "press.toml").write_text(toml(scene))
+    assert main(["run", str(tmp_path / "press.toml")]) == 2
+    assert "its period is 500 deg" in capsys.readouterr().err
+    with pytest.raises(ValueError, match="its period is 500 deg"):
+        dx.Machine(scene).report(tmp_path / "a.md", "Y", theta=[0, 60], steady=scene["steady"])
 
 
 def test_why_there_is_no_steady_state_is_in_the_units_of_the_scene():

@@ -55,7 +55,7 @@ MISTAKES = {
     "accuracy = [1]": '"extended", or an error such as 1e-9',
     'outputs = "a_C"': "a list of names of quantities",
     'outputs = ["V_C", "aC"]': ('outputs #2 = "aC"', "did you mean a_C"),
-    "motion.omega = 3": "not both",
+    'motion.omega = "30 rpm"': "not both",
     "masses.m_piston = 1": (
         "masses.m_piston = 1", "unknown key", "allowed: m_crank, m_rod, m_slider, I_crank, I_rod, r_crank",
     ),

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..definitions.tables import tables_of
+from ..mechanism.messages import errors_in
 from ..mechanism.names import LOADS
 from ..mechanism.own import used_by, using
 from ..mechanism.slips import warn_of_slips
@@ -35,7 +36,7 @@ def write_report(
         scene = machine.scene(names, **more)
         content, units = scene.content, scene.shown_in
         page = checked(page, content, units)
-        with using(content.definitions):
+        with using(content.definitions), errors_in(units):
             steps = steps_of(content)
             steps.watch, steps.total = watch, steps.total + 1
             run = compute(content, Sink(steps, page.overwrite))

@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 
-from ..mechanism.own import using
 from ..support.progress import progress_bar
 from ..support.shown import printable
 from .content import Content, Run
@@ -39,8 +38,7 @@ def run_scene(
         except OSError as error:  # whoever reads our output is gone, or the disk of it is full
             broken.append(error)
 
-    with using(content.definitions):
-        run = run_content(content, units, overwrite, progress_bar, report, page)
+    run = run_content(content, units, overwrite, progress_bar, report, page)
     if broken:
         raise broken[0]
     print("".join(f"\n\n{text}" for text in [files_text(content, replace(run, failures=()))] if text))

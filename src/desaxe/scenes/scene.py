@@ -105,8 +105,7 @@ class Scene:
         cannot be written; NotWrittenError, which has the result, where writing failed after all.
         """
         meter = progress_bar if progress is None else partial(nullcontext, progress)
-        with using(self.content.definitions), errors_in(self.shown_in):
-            run = run_content(self.content, self.shown_in, overwrite, meter)
+        run = run_content(self.content, self.shown_in, overwrite, meter)
         result = SceneResult(scene=self, **vars(run))
         if run.failures:
             raise NotWrittenError(result)
@@ -160,20 +159,21 @@ def run_content(
     report: Callable[[Run], None] = lambda run: None,
     page: Page | None = None,
 ) -> Run:
-    """Compute everything, `report` it, then write the files, pictures and page in these units."""
+    """Compute everything, `report` it, then write the files, pictures and page; all in these units."""
     files = len(content.of("picture")) + (content.data is not None)
     steps = steps_of(content)
     steps.total += files + (content.store is not None and bool(content.of("steady")))
-    with meter() as steps.watch:
-        run = compute(content, Sink(steps, overwrite))
-    report(run)
-    with meter() as steps.watch:
-        for name, job in _jobs(content, run, Sink(steps, overwrite, units)):
-            run = _attempted(run, name, job)
-        if page is not None:
-            so_far = run
-            run = _attempted(run, str(page.path), lambda: [write_page(page, content, so_far, units)])
-        steps.next("")
+    with using(content.definitions), errors_in(units):
+        with meter() as steps.watch:
+            run = compute(content, Sink(steps, overwrite))
+        report(run)
+        with meter() as steps.watch:
+            for name, job in _jobs(content, run, Sink(steps, overwrite, units)):
+                run = _attempted(run, name, job)
+            if page is not None:
+                so_far = run
+                run = _attempted(run, str(page.path), lambda: [write_page(page, content, so_far, units)])
+            steps.next("")
     return run
 
 

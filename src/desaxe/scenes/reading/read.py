@@ -91,9 +91,8 @@ def _content(
     inputs = _inputs(data, folder, units)
     warn_of_slips(written_inputs(data), units, 6, inputs)
     if "omega" in inputs and "omega0" in inputs:
-        raise SceneError(
-            f"motion.omega = {inputs['omega']}: give omega0 (the law) or omega (a state), not both"
-        )
+        written = f"motion.omega = {shown(data['motion']['omega'])}"
+        raise SceneError(f"{written}: give omega0 (the law) or omega (a state), not both")
     outputs = tuple(dict.fromkeys(data.get("outputs", ())))
     for index, name in enumerate(outputs, 1):
         require_known(f"outputs #{index}", name, "omega" in inputs)
