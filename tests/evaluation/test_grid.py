@@ -12,14 +12,6 @@ THETA = np.linspace(0.0, 6.0, 7)
 MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
 
 
-def test_dimensions_in_the_order_given():
-    grid = dx.grid(["V_C", "a_C"], BC=[0.3, 0.35], theta=THETA, ec=[0.0, 0.1, 0.2], AB=0.125, omega0=157.08)
-    assert grid["a_C"].dims == ("BC", "theta", "ec")
-    assert grid["a_C"].shape == (2, 7, 3)
-    assert grid["AB"].dims == ()
-    assert grid["AB"].item() == 0.125
-
-
 def test_status_and_margin_come_always():
     grid = dx.grid("a_C", theta=[1.6, 4.0], ec=[0.1, 0.24, np.nan], **MACHINE)
     assert grid["status"].dtype == np.int8
@@ -27,16 +19,6 @@ def test_status_and_margin_come_always():
     assert grid["margin"].dims == ("ec",)
     assert grid["margin"].values[0] == pytest.approx(0.125)
     assert np.isnan(grid["a_C"].values[0, 1])
-
-
-def test_attributes():
-    grid = dx.grid(["a_C", "V_C_wrt_ec"], theta=THETA, ec=0.1, **MACHINE)
-    assert grid["a_C"].attrs["units"] == "m/s^2"
-    assert grid["V_C_wrt_ec"].attrs["units"] == "1/s"
-    assert grid["theta"].attrs["units"] == "rad"
-    assert grid["a_C"].attrs["long_name"] == "acceleration of the slider"
-    assert grid["status"].attrs["flag_values"].tolist() == [0, 1, 2, 3, 4, 5, 6]
-    assert len(grid["status"].attrs["flag_meanings"].split()) == 7
 
 
 def test_status_of_friction_and_its_flags():

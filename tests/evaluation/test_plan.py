@@ -78,17 +78,6 @@ def test_every_road_has_the_digits_of_the_grid(name, inputs, load, reduce, tmp_p
         np.testing.assert_array_equal(grid[name], there)
 
 
-def test_blocks_of_tiny_lengths_are_those_of_common_ones():
-    """Lengths times a power of two give results times that."""
-    inputs = {"theta": np.linspace(0.0, 6.0, 9), "omega0": 2.0}
-    lengths = {"ec": np.array([0.0, 0.01]), "AB": 0.1, "BC": np.array([0.3, 0.4])}
-    common = dx.grid("a_C", **inputs, **lengths)
-    small = {name: length * 2.0**-190 for name, length in lengths.items()}
-    result = dx.grid("a_C", chunks={"ec": 1}, **inputs, **small).compute(scheduler="synchronous")
-    assert (result.status == 0).all()
-    np.testing.assert_allclose(result.a_C * 2.0**190, common.a_C.values, rtol=1e-13)
-
-
 @pytest.mark.parametrize(
     "reduce", [{"theta": "absmax"}, {"theta": "mean"}, {"ec": "std"}, {"ec": ["p95", "max"]}]
 )

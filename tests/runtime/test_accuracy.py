@@ -60,17 +60,6 @@ def broken(names, point):
     return [name for name in names if not is_exact(name, values[name], exact[name], point)]
 
 
-@pytest.mark.parametrize("family", ["generic", "change_point", "near_change_point"])
-def test_a_kernel_is_as_exact(family):
-    rows = [row for row in points(family, 40) if row["branch"] == 1]
-    columns = {name: np.tile([row[name] for row in rows], 60) for name in LAW}
-    answers = dx.evaluate(["Y", "V_C", "a_C", "a_C_wrt_ec"], accuracy="extended", **columns)
-    for index, row in enumerate(rows):
-        exact = truth_all(answers, **row)
-        for name, column in answers.items():
-            assert is_exact(name, float(column[index]), exact[name], row), (name, row)
-
-
 @pytest.mark.sampled
 @pytest.mark.parametrize("family", FAMILIES)
 def test_extended_keeps_its_promise_in_every_family(family):
@@ -132,26 +121,33 @@ def test_extended_where_alpha_has_not_done_much_yet():
         assert all(ulp_error(values[name], exact[name]) <= 1 for name in names), state
 
 
-@pytest.mark.thorough
-def test_a_kernel_is_as_exact_at_the_hardest_points():
-    """The last double inside a limit angle, and a crank that has just started."""
-    names = ["a_C", "a_C_wrt_BC", "a_C_wrt_alpha", "alpha_BC_wrt_alpha"]
-    rows = [row for row in [*LAST, *just_started(60)] if row["branch"] == 1]
-    columns = {name: np.tile([row[name] for row in rows], 30) for name in LAW}
-    assert len(columns["theta"]) > 2000
-    answers = dx.evaluate(names, accuracy="extended", **columns)
-    for index, row in enumerate(rows):
-        exact = truth_all(names, **row)
-        for name in names:
-            assert is_exact(name, float(answers[name][index]), exact[name], row), (name, row)
-
-
 def test_an_angle_of_a_billion_radians():
     rng = np.random.default_rng(10)
     for point in points("generic", 40, seed=11):
         at = point | {"theta": float(rng.uniform(1e8, 1.6e9)), "AB": point["BC"] / 4, "ec": point["BC"] / 5}
         at["alpha"] = abs(at["alpha"]) * 1e-9
         assert not broken(NAMES, at), at
+
+
+HARD = ["a_C", "a_C_wrt_BC", "a_C_wrt_alpha", "alpha_BC_wrt_alpha"]
+KERNELS = {
+    **{family: (["Y", "V_C", "a_C", "a_C_wrt_ec"], list(points(family, 40)), 60)
+       for family in ("change_point", "generic", "near_change_point")},
+    "the last double inside a limit angle, and a crank that has just started":
+        (HARD, [*LAST, *just_started(60)], 30),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("where", first(3, KERNELS))
+def test_a_kernel_is_as_exact(where):
+    names, rows, times = KERNELS[where]
+    rows = [row for row in rows if row["branch"] == 1]
+    columns = {name: np.tile([row[name] for row in rows], times) for name in LAW}
+    answers = dx.evaluate(names, accuracy="extended", **columns)
+    for index, row in enumerate(rows):
+        exact = truth_all(names, **row)
+        for name in names:
+            assert is_exact(name, float(answers[name][index]), exact[name], row), (name, row)
 
 
 TORQUE = ["T_in", *(f"T_in_wrt_{parameter}" for parameter in LAW)]

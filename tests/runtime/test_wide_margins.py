@@ -95,12 +95,6 @@ def test_a_point_that_a_kernel_cannot_compute_is_told(name, value):
         assert result[each][700] == pytest.approx(alone[each], rel=1e-12, abs=0.0, nan_ok=True)
 
 
-def test_what_has_one_form_is_not_asked_twice():
-    law = {"theta": 1.0, "omega0": 1.0, "alpha": 1.0}
-    asked = request(["omega"], law, 1, "standard")
-    assert plain_form(asked.names, asked.form, asked.fixed) is None
-
-
 def test_the_plain_form_is_shorter():
     given = dict.fromkeys(("theta", "ec", "AB", "BC", "omega0"), 1.0)
     asked = request(["V_C", "a_C"], given, 1, "standard")

@@ -48,36 +48,19 @@ def key_of(
     keys: dict[Any, KernelKey] | None = None,
 ) -> KernelKey:
     """The key of a request whose scalars and columns are known; `keys` are those of the request so far."""
-    theta = scalars.get("theta", 0.0)
+    theta, keys = scalars.get("theta", 0.0), {} if keys is None else keys
     check_angle(requested.accuracy, theta)
     zeros = tuple([n for n, x in scalars.items() if type(x) is float and x == 0.0 and n in STRUCTURAL_ZEROS])
-    kind = (
-        tuple(axis_of.items()),
-        axes,
-        zeros,
-        constants().limit < abs(theta),
-        _is_wide(requested, scalars, columns, axis_of),
-    )
-    key = None if keys is None else keys.get(kind)
+    far, wide = constants().limit < abs(theta), _is_wide(requested, scalars, columns, axis_of)
+    kind = tuple(axis_of.items()), axes, zeros, far, wide
+    key = keys.get(kind)
     if key is None:
-        key = _new_key(requested, *kind)
-        if keys is not None:
-            keys[kind] = key
+        fixed, form = (*requested.fixed, *((name, 0.0) for name in zeros)), requested.form
+        if wide and plain_form(requested.names, form, fixed) is not None:
+            form = form._replace(wide_margins=True)
+        along = tuple(sorted(axis_of.items()))
+        key = keys[kind] = KernelKey(requested.names, form, fixed, along, axes, requested.accuracy, far)
     return key
-
-
-def _new_key(
-    requested: Request,
-    axis_of: tuple[tuple[str, int], ...],
-    axes: int,
-    zeros: tuple[str, ...],
-    far: bool,
-    wide: bool,
-) -> KernelKey:
-    fixed, form = (*requested.fixed, *((name, 0.0) for name in zeros)), requested.form
-    if wide and plain_form(requested.names, form, fixed) is not None:
-        form = form._replace(wide_margins=True)
-    return KernelKey(requested.names, form, fixed, tuple(sorted(axis_of)), axes, requested.accuracy, far)
 
 
 def _is_wide(
@@ -115,14 +98,10 @@ def plain_of(key: KernelKey) -> Program | None:
 
 
 def kernel_of(key: KernelKey) -> Kernel:
-    """The loop nest of a key."""
-    return _loops_of(key)._replace(given=tables_of(key))
-
-
-def tables_of(key: KernelKey) -> tuple[str, ...]:
-    """The tables of a key's loads, which are arguments of its kernel."""
+    """The loop nest of a key; the tables of its loads are arguments."""
     under = key.form.under
-    return () if under is None else tuple(name for load in under.loads for name in load.tables)
+    tables = () if under is None else (name for load in under.loads for name in load.tables)
+    return _loops_of(key)._replace(given=tuple(tables))
 
 
 def _loops_of(key: KernelKey) -> Kernel:
