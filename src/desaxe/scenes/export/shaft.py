@@ -6,8 +6,8 @@ are those of a given state, behind the lines of the law, under names that begin 
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from hashlib import sha256
+from math import nan
 from typing import Any, NamedTuple
 
 from ...compiler.languages.protocol import Forms, Module, Symbol
@@ -41,24 +41,6 @@ class SliderRequest(NamedTuple):
     inputs: Mapping[str, Any]
     branch: int
     accuracy: str = "standard"
-
-
-@dataclass(frozen=True)
-class LineFactor:
-    """A coefficient that a line of the Program has, times a number."""
-
-    line: str
-    size: float = 1.0
-
-    def __mul__(self, other: float) -> "LineFactor":
-        return LineFactor(self.line, self.size * other)
-
-    __rmul__ = __mul__
-
-    def __add__(self, other: "LineFactor") -> "LineFactor":
-        return LineFactor(self.line, self.size + (other.size if isinstance(other, LineFactor) else other))
-
-    __radd__ = __add__
 
 
 def module_of_shaft(
@@ -160,11 +142,14 @@ class _Writer:
             if name == "omega":
                 self.add(own, "copy", self.omega if self.law else state["omega"])
             elif name == "margin":
-                self._fold(own, [row[name] for k, row in of.items() if k != SHAFT], "lt")
+                self._fold(own, [row[name] for k, row in of.items() if k != SHAFT], True)
             elif name == "status":
                 self._status(own, [row[name] for k, row in of.items() if k != SHAFT])
             else:
-                self._sum(own, [(of[k][q], share.at(self._bank(k))) for (k, q), share in terms[name].items()])
+                self._sum(
+                    own,
+                    [(of[k][q], complex(share.at(self._bank(k)))) for (k, q), share in terms[name].items()],
+                )
             self.of_notes[own] = Note(*self.notes(name))
         outputs = tuple(written_name(name) for name in names)
         whole = Program(tuple(self.arguments), tuple(self.lines), outputs, self.of_notes)
@@ -193,7 +178,8 @@ class _Writer:
         moving = state["omega"] = self.add("shaft_speed", "select", at_rest, TINY, self.omega)
         for name, above in (("theta", "alpha"), ("alpha", "theta"), ("omega0", "omega0")):
             self.add(f"slope_{name}", "div", values[above], moving)
-        return {name: LineFactor(f"slope_{name}") for name in ("theta", "alpha", "omega0")}
+        # An imaginary coefficient is one of the line of the slope.
+        return dict.fromkeys(("theta", "alpha", "omega0"), 1j)
 
     def _insert(self, program: Program, start: str, values: Mapping[str, Argument]) -> list[Argument]:
         """Insert a program under names with a start, with values of its inputs; its outputs.
@@ -201,19 +187,19 @@ class _Writer:
         Whole numbers become floats: they are compared.
         """
         names: dict[str, Argument] = {**values, **{line.name: start + line.name for line in program.lines}}
+
+        def argument(a: Argument, line: Line) -> Argument:
+            if isinstance(a, str):
+                return names[a]
+            if isinstance(a, TableName):
+                return TableName(start + a.name)
+            return float(a) if line.type == "i64" and not isinstance(a, bool) else a
+
         for line in program.lines:
-            args = [self._argument(a, start, names, line) for a in line.args]
-            self.lines.append(Line(start + line.name, line.op, tuple(args), line.type.replace("i64", "f64")))
+            args = tuple(argument(a, line) for a in line.args)
+            self.lines.append(Line(start + line.name, line.op, args, line.type.replace("i64", "f64")))
         self.of_notes |= {start + n: note for n, note in program.notes.items() if n not in program.inputs}
         return [names[name] for name in program.outputs]
-
-    @staticmethod
-    def _argument(a: Argument, start: str, names: Mapping[str, Argument], line: Line) -> Argument:
-        if isinstance(a, str):
-            return names[a]
-        if isinstance(a, TableName):
-            return TableName(start + a.name)
-        return float(a) if line.type == "i64" and not isinstance(a, bool) else a
 
     def _slider(self, k: int, names: Sequence[str], state: Mapping[str, Argument]) -> dict[str, Argument]:
         """The lines of a slider: its quantities by name."""
@@ -234,33 +220,30 @@ class _Writer:
         values = {**state, "theta": angle}
         return dict(zip(asked.shown, self._insert(asked.stable("standard"), start, values), strict=True))
 
-    def _sum(self, name: str, terms: Sequence[tuple[Argument, Any]]) -> None:
+    def _sum(self, name: str, terms: Sequence[tuple[Argument, complex]]) -> None:
         """The sum of values times coefficients."""
+        _, by = parts(name)
         total: Argument = 0.0
         for n, (value, factor) in enumerate(terms):
-            number = factor.size if isinstance(factor, LineFactor) else float(factor)
-            term = self.add(f"{name}_times_{n}", "mul", value, number)
-            if isinstance(factor, LineFactor):
-                term = self.add(f"{name}_along_{n}", "mul", term, factor.line)
+            term = self.add(f"{name}_times_{n}", "mul", value, factor.real or factor.imag)
+            if factor.imag:
+                term = self.add(f"{name}_along_{n}", "mul", term, f"slope_{by[0]}")
             total = self.add(f"{name}_to_{n}", "add", total, term)
-        if self.law:
-            nothing = float("nan")
-            self.add(name, "select", self.stalled, nothing, total)
-        else:
-            self.add(name, "copy", total)
+        self.add(name, *(("select", self.stalled, nan, total) if self.law else ("copy", total)))
 
-    def _fold(self, name: str, values: Sequence[Argument], op: str) -> None:
-        """The least of values, or with "lt" of the others the largest."""
+    def _fold(self, name: str, values: Sequence[Argument], least: bool) -> None:
+        """The least of values, or the largest."""
         best = values[0]
         for n, value in enumerate(values[1:]):
-            pair = (value, best) if name == "margin" else (best, value)
-            other = self.add(f"{name}_is_{n}", op, *pair, type="bool")
-            best = self.add(f"{name}_of_{n}", "select", other, value, best)
+            pair = (value, best) if least else (best, value)
+            best = self.add(
+                f"{name}_of_{n}", "select", self.add(f"{name}_is_{n}", "lt", *pair, type="bool"), value, best
+            )
         self.add(name, "copy", best)
 
     def _status(self, name: str, values: Sequence[Argument]) -> None:
         """The worst status: 3 where the shaft has stalled."""
-        self._fold(f"{name}_worst", values, "lt")
+        self._fold(f"{name}_worst", values, False)
         worst: Argument = 0
         for one in (code for code in PointStatus if code):
             test = self.add(f"{name}_{one.name}", "eq", f"{name}_worst", float(one), type="bool")
