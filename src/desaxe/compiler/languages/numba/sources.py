@@ -99,8 +99,10 @@ def text_of_block(test, plain, stable, columns, targets):
     if isinstance(plain, types.NoneType):
         yield f"for i in range(size): values = stable({inputs}); {store}"
         return
-    count = f"count += uint64(1) if test({inputs}) else uint64(0)"
-    yield f"for i in range(size): {count}; values = plain({inputs}); {store}"
+    # The test has a loop of its own: with thirteen outputs beside it, it costs as much as all of them.
+    yield f"for i in range(size): count += uint64(1) if test({inputs}) else uint64(0)"
+    yield "if count > uint64(0):"
+    yield f"    for i in range(size): values = plain({inputs}); {store}"
     unless = "; ".join(f"t{k}[i] = t{k}[i] if wide else values[{k}]" for k in range(len(targets)))
     yield "if count == size: return"
     yield f"for i in range(size): wide = test({inputs}); values = stable({inputs}); {unless}"
