@@ -7,7 +7,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.cli.command import main
-from tests.crankshaft.test_sums import CYLINDER
+from tests.crankshaft.test_sums import CYLINDER, PUMP
 
 ONE = dx.Machine(**CYLINDER | {"ec": 0.0}, omega0=200.0, units="deg")
 THREE = dx.Crankshaft(ONE, phase=[0, 110, 250])
@@ -38,6 +38,23 @@ def test_the_best_phase_for_a_torque_at_an_angle():
     torque = THREE.evaluate("T_in", theta=90, **{"phase[1]": phases})
     assert best["value"] == pytest.approx(torque.max(), rel=1e-8)
     assert best["phase[1]"] == pytest.approx(phases[torque.argmax()], abs=0.02)
+
+
+def test_the_best_angles_and_the_longest_crank_of_sliders_that_differ():
+    """At the largest inertia that the range has, slider 1 only just turns: AB[1] = BC - |ec|."""
+    loco = dx.Crankshaft([ONE, dx.Machine(**PUMP, omega0=200.0, units="deg")], phase=[0, 90])
+    best = loco.optimize(
+        maximize=("at", "90 deg", "T_in"), over={"phase[1]": (60, 170), "bank[1]": (-20, 30)}, starts=1
+    )
+    phase, bank = np.meshgrid(np.linspace(60.0, 170.0, 301), np.linspace(-20.0, 30.0, 101))
+    torque = loco.evaluate("T_in", theta=90, **{"phase[1]": phase, "bank[1]": bank})
+    assert best["value"] == pytest.approx(torque.max(), rel=1e-5)
+    assert best["value"] >= torque.max()
+    longest = loco.optimize(maximize=("at", "90 deg", "M_eff"), over={"AB[1]": (0.03, 0.3)}, starts=1)
+    assert longest["AB[1]"] == pytest.approx(0.15 - 0.01, rel=1e-9)
+    inertia = loco.evaluate("M_eff", theta=90)
+    result = loco.solve(over={"AB[1]": (0.01, 0.13)}, where={("at", "90 deg", "M_eff"): inertia})
+    assert result["AB[1]"] == pytest.approx([0.03], rel=1e-9)
 
 
 @pytest.mark.thorough

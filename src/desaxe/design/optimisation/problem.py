@@ -58,9 +58,8 @@ class Space(NamedTuple):
         """The length of the rod, or the longest one, of several sliders of the first."""
         if "BC" in self.names:
             return float(self.high[self.names.index("BC")])
-        return float(
-            self.fixed["BC"] if "BC" in self.fixed else self.fixed["sliders"].members[0].inputs["BC"]
-        )
+        several = self.fixed.get("sliders")
+        return float(self.fixed["BC"] if several is None else several.members[0].inputs["BC"])
 
     def designs(self, z: Array) -> dict[str, Any]:
         """Rows of variables as parameters by name."""
