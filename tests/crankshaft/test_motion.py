@@ -73,6 +73,16 @@ def test_a_motion_with_friction_is_that_of_the_free_bodies():
     )
 
 
+def test_friction_of_one_guide_jams_the_shaft():
+    """Slider 0 is pushed into its guide where mu tan(phi) = 1, sin(phi) = AB sin(theta)/BC."""
+    one = dx.Machine(ec=0.0, AB=0.04, BC=0.064, m_slider=0.8, m_rod=0.5, mu=1.5, I_crank=1e-3)
+    shaft = dx.Crankshaft(one, phase=[0.0, 1.0], I_shaft=0.01)
+    motion = shaft.simulate(torque=3.0, omega_start=30.0, t_end=1.0)
+    assert motion["status"] == 3
+    assert motion["events"][-1].kind == "friction jams"
+    assert np.sin(motion["theta"][-1]) == pytest.approx(0.064 / 0.04 * np.sin(np.arctan(1 / 1.5)), abs=1e-5)
+
+
 def test_a_limit_angle_of_one_slider_ends_the_motion():
     """S = 0 of slider 1 at ec + AB sin(theta - firing) = BC; derivatives by differences."""
     one = dx.Machine(ec=0.01, AB=0.1, BC=0.07, m_slider=0.4, I_crank=1e-3, g_Y=-9.81)

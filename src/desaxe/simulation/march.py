@@ -37,6 +37,7 @@ from .panel import TABLE, Record
 from .result import DONE, FAILED, JAMS, REST, Event
 
 Array = NDArray[np.float64]
+SMALL = 1e-6  # rad
 NEXT_TO = 1e-9  # rad: so near to a limit a load on a massless slider has grown without bound
 CHATTER = 6  # standstills in a row, all within a millionth of the time
 RECORDED = ("heads", "records", "ends", "laws")
@@ -225,6 +226,11 @@ class March:
             rows = self.law.at(self.t, self.y[Q], self.y[V], self.numbers)
             wedge, side = float(rows[at.WEDGE, 0]), float(np.sign(rows[at.NORMAL, 0]))
             if wedge > 1.0 - 1e-3 or not -1.0 <= wedge * side < march.JAMS_AT:
+                self._jam(0)
+                return
+        if self.model.friction is None:  # of several guides
+            ahead = now.theta + np.copysign(SMALL, now.omega)
+            if np.isnan(self.law.alpha(self.t, ahead, now.omega, self.numbers)):
                 self._jam(0)
                 return
         for mark in self.marks:
