@@ -10,7 +10,6 @@ from desaxe.compiler.passes.trigonometry import expand_trigonometry
 from desaxe.compiler.program import tables_in
 from desaxe.mechanism.constants import constants
 from desaxe.scenes.export.portable import Order, module_of
-from desaxe.scenes.schema import SceneError
 from tests.compiler.languages.runners import compiled
 from tests.compiler.languages.tools import imported, jax_in_doubles
 from tests.effort import cases
@@ -140,11 +139,6 @@ def test_extended_is_in_c_too(tmp_path):
         here = {n: float(x) for n, x in zip(INPUTS, point, strict=True)}
         right = dx.evaluate(names, **here, **FIXED, F_Y=one, accuracy="extended")
         np.testing.assert_allclose([result[n][k] for n in names], [*right.values()], rtol=1e-12, atol=1e-12)
-
-
-def test_what_a_module_cannot_hold_is_refused_by_name(tmp_path):
-    with pytest.raises(SceneError, match=r"loads.F_Y = .*a compiled module holds tables"):
-        dx.compile(scene(dx.over_theta(np.sin, np.cos)), tmp_path / "press", to="c")
 
 
 def test_a_scene_without_open_inputs(tmp_path):

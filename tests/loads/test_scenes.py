@@ -171,26 +171,6 @@ def test_what_is_no_load_is_refused(load, tmp_path):
         dx.scene(path)
 
 
-@pytest.mark.thorough
-def test_a_compiled_module_holds_the_table(tmp_path):
-    scene = dx.scene(write(tmp_path, LOADS["points"]))
-    path = dx.compile(scene, tmp_path / "press_kernels.py")
-    assert "desaxe" not in "".join(line for line in path.read_text("utf-8").splitlines() if "import" in line)
-    module = imported(path)
-    right = scene.run().dataset
-    result = module.run()
-    for name in ("T_in", "T_in_wrt_theta", "status"):
-        np.testing.assert_allclose(result[name], right[name].transpose(*module.AXES), rtol=1e-12, atol=1e-11)
-    point = module.point(**{"theta": 1.0 - 4 * np.pi, "ec": 0.01})
-    alone = dx.evaluate(["T_in", "T_in_wrt_theta"], theta=1.0, ec=0.01, F_Y=expected(), **DESIGN)
-    np.testing.assert_allclose(point[:2], list(alone.values()), rtol=1e-12)
-    with pytest.raises(TypeError, match="theta: expected real numbers, got <U6"):
-        module.evaluate("60 deg", 0.01)
-    announced = re.findall(r"^    (\w+)\(", module.__doc__, re.MULTILINE)
-    assert {"point", "evaluate", "grid", "run", "T_in"} == set(announced)
-    assert all(callable(getattr(module, name)) for name in announced)
-
-
 def test_what_no_module_can_hold_is_refused(tmp_path):
     inside = {
         "mechanism": {"ec": 0.0, "AB": 0.04, "BC": 0.064},

@@ -93,22 +93,6 @@ def test_a_series_alone_gives_places_and_values():
 
 
 @pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: dx.over_Y([0.2], [5.0]), "the number of positions is 1, expected at least two"),
-        (lambda: dx.over_Y([[0.2, 5], [0.3, 6]]), r"desaxe\.over_Y\(\*zip\(\*rows\)\)"),
-        (lambda: dx.over_stroke(np.ones((3, 2)), dead_centre="outer"), r"desaxe\.over_stroke\(\*zip"),
-        (lambda: dx.over_theta([(0, 1), (1, 2)]), r"desaxe\.over_theta\(\*zip"),
-        (lambda: dx.over_Y([0.2, 0.3]), "outward is missing: the load at each of the positions"),
-        (lambda: dx.over_Y(["0,2 m", "0,3 m"], [1, 2]), "a decimal point is a point, not a comma"),
-    ],
-)
-def test_what_is_no_table_is_told_with_the_remedy(make, message):
-    with pytest.raises((TypeError, ValueError), match=message):
-        make()
-
-
-@pytest.mark.parametrize(
     "load", [DIE, SPLINE, PRESS.over_stroke([0, 8, 8], [-80, -80, 0], dead_centre="outer")]
 )
 def test_a_scene_has_the_points_of_a_load_in_the_units_of_the_machine(load, tmp_path):

@@ -248,30 +248,6 @@ def test_machines_scenes_and_files_read_it(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        (
-            ([0.0, 0.1], [1.0, 2.0], None, "linear", "upper"),
-            "dead_centre = 'upper': it is one of outer, inner",
-        ),
-        (([-0.1, 0.1], [1.0, 2.0], None, "linear", "outer"), "the distance -0.1 m is below 0"),
-        (([0.0, 0.1, 0.1, 0.1], [1.0] * 4, None, "linear", "outer"), "given three times"),
-        (([0.0, 0.1, 0.1], [1.0] * 3, None, "step", "outer"), "but 0.1 follows 0.1: a jump"),
-        (
-            ([0.0, 0.1, 0.05], [1.0] * 3, None, "linear", "outer"),
-            "must ascend or descend, but 0.05 follows 0.1",
-        ),
-    ],
-)
-def test_what_is_no_table_is_refused_by_name(given, message):
-    *columns, which = given
-    with pytest.raises(ValueError, match=f"over_stroke.*{message}"):
-        dx.over_stroke(*columns, dead_centre=which)
-    with pytest.raises(TypeError, match=r'^over_stroke: dead_centre is missing: dead_centre="outer" or'):
-        dx.over_stroke(*columns)
-
-
-@pytest.mark.parametrize(
     "options", [{"mu": 0.05}, pytest.param({"wrt": "m_slider"}, marks=pytest.mark.thorough)]
 )
 def test_of_many_designs_those_without_the_dead_centre_do_not_start(options):

@@ -78,6 +78,35 @@ def test_tables_that_are_no_periodic_function_are_refused(angles, values, more, 
         dx.over_theta(angles, values, **more)
 
 
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: dx.over_Y([0.2], [5.0]), "the number of positions is 1, expected at least two"),
+        (lambda: dx.over_Y([[0.2, 5], [0.3, 6]]), r"desaxe\.over_Y\(\*zip\(\*rows\)\)"),
+        (lambda: dx.over_stroke(np.ones((3, 2)), dead_centre="outer"), r"desaxe\.over_stroke\(\*zip"),
+        (lambda: dx.over_theta([(0, 1), (1, 2)]), r"desaxe\.over_theta\(\*zip"),
+        (lambda: dx.over_Y([0.2, 0.3]), "outward is missing: the load at each of the positions"),
+        (lambda: dx.over_Y(["0,2 m", "0,3 m"], [1, 2]), "a decimal point is a point, not a comma"),
+        (lambda: from_outer([0.0, 0.1], dead_centre="upper"), "= 'upper': it is one of outer, inner"),
+        (lambda: from_outer([-0.1, 0.1]), "over_stroke: the distance -0.1 m is below 0"),
+        (lambda: from_outer([0.0, 0.1, 0.1, 0.1]), "over_stroke: .* given three times"),
+        (lambda: from_outer([0.0, 0.1, 0.1], kind="step"), "over_stroke: .* but 0.1 follows 0.1: a jump"),
+        (lambda: from_outer([0.0, 0.1, 0.05]), "must ascend or descend, but 0.05 follows 0.1"),
+        (
+            lambda: from_outer([0, 1], dead_centre=None),
+            "^over_stroke: dead_centre is missing: dead_c",
+        ),
+    ],
+)
+def test_other_tables_are_refused_with_the_remedy(make, message):
+    with pytest.raises((TypeError, ValueError), match=message):
+        make()
+
+
+def from_outer(distances, kind="linear", dead_centre="outer"):
+    return dx.over_stroke(distances, [1.0] * len(distances), kind=kind, dead_centre=dead_centre)
+
+
 def test_a_wide_gap_under_a_spline_is_warned_of():
     with pytest.warns(dx.LoadWarning, match="a gap of"):
         dx.over_theta(np.linspace(0.0, 1.0, 11), np.ones(11))
