@@ -267,6 +267,7 @@ def test_partial_derivatives_go_through_the_load(name, made, monkeypatch):
     one.close()
 
 
+@pytest.mark.sampled
 def test_fmpy_finds_no_problem(made):
     validate(made("both ways"))
 
