@@ -315,19 +315,6 @@ def test_none_of_several_designs_turns(ec):
     assert result["status"].tolist() == [4 if math.isnan(ec[0]) else 1, 1]
 
 
-def test_the_fastest_points_of_arrays_are_roots_of_the_acceleration():
-    """There the acceleration changes its sign."""
-    ec = np.linspace(-0.0239, 0.0239, 701)
-    lengths = {"ec": ec, "AB": 0.04, "BC": 0.064}
-    result = dx.events(omega0=2.0, **lengths)
-    for stroke in ("V_outward", "V_inward"):
-        theta = result[f"theta_{stroke}"] + np.array([[-1e-9], [1e-9]])
-        before, after = np.sign(dx.evaluate("a_C", theta=theta, omega0=1.0, **lengths))
-        assert (before == -after).all()
-    one = dx.events(ec=float(ec[17]), AB=0.04, BC=0.064, omega0=2.0)
-    assert result["V_outward"][17] == pytest.approx(one["V_outward"], rel=1e-14)
-
-
 @pytest.mark.parametrize("ec", [0.1, -0.1])
 def test_a_crank_that_does_not_turn_has_no_slower_stroke(ec):
     one = dx.events(ec=ec, AB=0.2, BC=0.1)

@@ -198,20 +198,6 @@ def test_other_stable_speeds_are_listed_and_unstable_ones_are_not():
         assert one["stable"]
 
 
-def test_the_motion_of_simulate_settles_there():
-    press = {**PRESS, "F_Y": dx.over_Y([0.15, 0.2, 0.25], [-4000, -2000, 0], [3000, 0, 0]), "mu": 0.1}
-    result = dx.steady(torque=MOTOR, flywheel_inertia=3.0, **press)
-    heavier = {**press, "I_crank": press["I_crank"] + 3.0}
-    start = {"theta0": 0.0, "omega_start": result["omega"][0]}
-    motion = dx.simulate(
-        torque=MOTOR, t_end=1.2 * result["period"], rtol=1e-12, until=2 * pi, **start, **heavier
-    )
-    assert motion["t"][-1] == pytest.approx(result["period"], rel=1e-9)
-    assert motion["omega"][-1] == pytest.approx(result["omega"][0], rel=1e-9)
-    far = dx.simulate(torque=MOTOR, t_end=5.0, rtol=1e-12, omega_start=5.0, until=2 * pi * 8, **heavier)
-    assert far["omega"][-1] == pytest.approx(result["omega"][0], rel=1e-9)
-
-
 def test_arrays_are_the_designs_one_by_one():
     lengths = np.linspace(0.04, 0.06, 5)
     most = np.array([[2.0], [30.0]])
@@ -425,17 +411,6 @@ def test_a_light_crank_settles_or_stalls_as_its_free_bodies_do(machine, motor, s
         assert result["period"] == pytest.approx(times[-1], rel=2e-6)
     else:
         assert "too weak, it stalls near theta" in result["message"]
-
-
-def test_simulate_takes_motors():
-    start = {"t_end": 0.3, "times": [0.1, 0.3], "omega_start": 12.0, "rtol": 1e-11, **PRESS}
-    plain = dx.simulate(torque=lambda t, theta, omega: 500.0 - 30.0 * omega, **start)
-    table, line = dx.over_omega([0.0, 50.0], [500.0, -1000.0]), lambda omega: 500.0 - 30.0 * omega
-    for torque in (table, line, lambda theta, omega: 500.0 - 30.0 * omega):
-        np.testing.assert_allclose(dx.simulate(torque=torque, **start)["omega"], plain["omega"], rtol=1e-9)
-    for torque in (table, line):  # a kernel each
-        many = dx.simulate(torque=torque, **{**start, "I_crank": [2.0, 3.0]})
-        np.testing.assert_allclose(many["omega"][0], plain["omega"], rtol=1e-9)
 
 
 def test_simulate_takes_motors_of_arrays():

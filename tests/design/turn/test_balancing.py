@@ -125,24 +125,6 @@ def test_a_load_between_slider_and_frame_does_not_shake_the_foundation(period):
         assert outside == pytest.approx(abs(first(force)), rel=1e-5)
 
 
-@pytest.mark.parametrize("fluctuation", [0.02, 0.2])
-def test_a_flywheel_in_a_simulated_motion(fluctuation):
-    def load(theta):
-        return -500.0 * np.where(np.sin(theta) < 0, np.sin(theta) ** 2, 0.0)
-
-    machine = {**PRESS, "I_rod": 1e-3}
-    result = dx.drive(fluctuation=fluctuation, F_Y=load, **machine)
-    mean = machine.pop("omega0")
-    run = dx.simulate(
-        torque=result["torque_mean"], F_Y=lambda t, theta, omega: float(load(theta)), rtol=1e-10, t_end=0.06,
-        theta0=result.course["theta_of_speed"][0], omega_start=result.course["speed"][0],
-        I_crank=result["flywheel_inertia"], **machine,
-    )  # fmt: skip
-    fastest, slowest = run["omega"].max(), run["omega"].min()
-    assert (fastest + slowest) / 2 == pytest.approx(mean, rel=1e-5)
-    assert (fastest - slowest) / mean == pytest.approx(fluctuation, rel=1e-4)
-
-
 def test_a_flywheel_without_a_load():
     """(J + M_eff) omega^2 stays the same: the extremes of M_eff are those of the speed."""
     J = dx.drive(fluctuation=0.02, **PRESS)["flywheel_inertia"]

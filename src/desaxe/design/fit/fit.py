@@ -74,8 +74,8 @@ def fit(
                        errors; 1 not converged, 2 a combination left open; `message` says too where residuals
                        are far beyond sigma
 
-    SciPy's trust region reflective least squares with the exact Jacobian; biases and scales are solved for
-    at each step (variable projection), and need no start. A step to a design that cannot be assembled at
+    SciPy's trust region reflective least squares with the exact Jacobian; biases and scales need no
+    start: they are solved for at each. A step to a design that cannot be assembled at
     every sample is shortened. Raises ValueError for data that are empty or fewer than the
     unknowns, and where no start can be assembled; TypeError for a missing input. Needs the extra `design`.
 

@@ -1,9 +1,7 @@
 """The best design within limits.
 
-optimize       the public call
-objectives     objectives, free parameters and limits, read and checked
-problem        values and gradients in variables from 0 to 1
-search         scan, SLSQP, refinement by the optimality conditions
-one_objective  the optimum of one objective, and the Pareto front of several
-optimum        what was found: multipliers, active limits, message
+optimize  the public call: one objective, or the Pareto front of several
+problem   objectives, space and limits, read and checked; values and gradients
+search    scan, SLSQP, and a search without derivatives where these say nothing
+optimum   the result: multipliers, active limits, message
 """

@@ -28,7 +28,7 @@ BROKEN = 1e-8  # of its scale: how far these may break a limit
 SATISFIED = 1e-7  # of its scale: a limit that is broken by less is kept
 SETTLED = 1e-4  # residual of the optimality conditions
 LEVEL = 1e-6  # scaled slopes below this are none
-STEPS = 100
+STEPS, LAST_STEPS = 100, 10
 FLAT, FINEST = 1e-10, 1e-18  # of the scale: a smaller gain ends a run, and one to the last digits
 WORST = 1e3  # of the scale: what a design counts that cannot be judged
 
@@ -106,33 +106,34 @@ class LocalSearch:
 
     def run(self, start: Array, pinned: int | None = None, flat: float = FLAT) -> Candidate:
         """SLSQP from one point; `pinned` is the index of a limit to stay on."""
-        n, m = len(start), self.count
+        n, m, several = len(start), self.count, self.count > 1
         equal = np.append(np.zeros(m, bool), self.equal)
         if pinned is not None:
             equal[m + pinned] = True
-        way, top = np.append(-np.ones(m), np.ones(len(self.limits))), np.append(np.zeros(n), 1.0)
-        is_piece = 1.0 * (way < 0.0)
+        # The constraint functions, which stay positive: t - piece where there are several pieces, and limits.
+        way, is_piece = np.append(-np.ones(m), np.ones(len(self.limits))), np.arange(len(equal)) < m
 
         def sides(z: Array) -> Array:
-            """The constraint functions, which stay positive."""
-            return np.asarray(is_piece * z[n] + way * self.scaled(z[:n])[0])
+            return np.asarray(way * self.scaled(z[:n])[0] + (is_piece * z[n] if several else 0.0))
 
         def slopes(z: Array) -> Array:
-            return np.column_stack([way[:, None] * self.scaled(z[:n])[1], is_piece])
+            along = way[:, None] * self.scaled(z[:n])[1]
+            return np.column_stack([along, is_piece]) if several else along
 
-        constraints = [
-            {"type": name, "fun": lambda z, k=kind: sides(z)[k], "jac": lambda z, k=kind: slopes(z)[k]}
-            for name, kind in (("ineq", ~equal), ("eq", equal))
-            if kind.any()
-        ]
+        kinds = (("ineq", ~equal & (several | ~is_piece)), ("eq", equal))
+        top = np.append(np.zeros(n), 1.0)
         answer = minimize(
-            lambda z: z[n],
-            np.append(start, self.scaled(start)[0][:m].max()),
-            jac=lambda z: top,
+            (lambda z: z[n]) if several else (lambda z: self.scaled(z)[0][0]),
+            np.append(start, self.scaled(start)[0][:m].max())[: n + several],
+            jac=(lambda z: top) if several else (lambda z: self.scaled(z)[1][0]),
             method="SLSQP",
-            bounds=[(0.0, 1.0)] * n + [(None, None)],
-            constraints=constraints,
-            options={"maxiter": STEPS, "ftol": flat},
+            bounds=[(0.0, 1.0)] * n + [(None, None)] * several,
+            constraints=[
+                {"type": name, "fun": lambda z, k=kind: sides(z)[k], "jac": lambda z, k=kind: slopes(z)[k]}
+                for name, kind in kinds
+                if kind.any()
+            ],
+            options={"maxiter": STEPS if flat == FLAT else LAST_STEPS, "ftol": flat},
         )
         z = np.clip(np.nan_to_num(answer.x[:n], nan=0.5), 0.0, 1.0)
         overshot = [k for k in self.margins if self.scaled(z)[0][m + k] < 0.0]
