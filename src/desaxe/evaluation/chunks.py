@@ -60,17 +60,12 @@ def longest(lengths: Mapping[str, Sequence[int]]) -> dict[str, int]:
     return {name: max(1, *own) for name, own in lengths.items()}
 
 
-def blocks_of(sizes: Mapping[str, int], chunk: Mapping[str, int]) -> Iterator[tuple[int, ...]]:
-    """The indices of all chunks, in order."""
-    return product(*(range(-(-size // chunk[name])) for name, size in sizes.items()))
-
-
-def slices_of(place: Sequence[int], sizes: Mapping[str, int], chunk: Mapping[str, int]) -> Slices:
-    """The slice of a chunk along each dimension."""
-    return {
-        name: slice(k * chunk[name], min((k + 1) * chunk[name], sizes[name]))
-        for name, k in zip(sizes, place, strict=True)
-    }
+def blocks_of(sizes: Mapping[str, int], chunk: Mapping[str, int]) -> Iterator[tuple[dict[str, int], Slices]]:
+    """All chunks in order: the index and the slice along each dimension."""
+    for index in product(*(range(-(-size // chunk[name])) for name, size in sizes.items())):
+        places = dict(zip(sizes, index, strict=True))
+        ends = {name: min((k + 1) * chunk[name], sizes[name]) for name, k in places.items()}
+        yield places, {name: slice(k * chunk[name], ends[name]) for name, k in places.items()}
 
 
 def _is_auto(requested: Any) -> bool:

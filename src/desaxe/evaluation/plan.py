@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ..mechanism.names import LENGTHS
 from ..support.extras import needed
-from .chunks import Slices, blocks_of, chunk_lengths, slices_of
+from .chunks import Slices, blocks_of, chunk_lengths
 from .labels import Output, labelled, with_loads
 from .points import Outer, Points, Step, points_of
 from .reductions.argument import Reductions
@@ -111,9 +111,7 @@ class Plan(NamedTuple):
     def blocks(self, lengths: Mapping[str, int]) -> Iterator[Block]:
         """All blocks in order; a step of fewer dimensions is a part of the first block that has its place."""
         sizes, columns = self.sizes, self.outer.columns
-        for place in blocks_of(sizes, lengths):
-            regions = slices_of(place, sizes, lengths)
-            places = dict(zip(sizes, place, strict=True))
+        for places, regions in blocks_of(sizes, lengths):
             parts = tuple(
                 Part(s, tuple(places[n] for n in s.dims), tuple(regions[n] for n in s.dims))
                 for s in self.all

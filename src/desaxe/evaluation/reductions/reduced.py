@@ -26,7 +26,7 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
 from ...mechanism.own import Definition
 from ...runtime.threads import run_parts
-from ..chunks import Slices, blocks_of, chunk_lengths, longest, slices_of
+from ..chunks import Slices, blocks_of, chunk_lengths, longest
 from ..labels import Output, attributes, input_attributes, side_attributes
 from ..points import Outer, Points, Step, outer_arrays, points_of
 from .argument import At, Chain, Reductions, chain_name, extremes_at_end
@@ -159,8 +159,7 @@ class Reduced(Step):
         others = chunk_lengths("auto", {name: sizes[name] for name in rest}, max(1, BLOCK // points))
         lengths = {**longest(others), **pieces}
         whole = {name: max(size, 1 if name in first else 0) for name, size in sizes.items()}
-        for place in blocks_of(whole, lengths):
-            yield slices_of(place, whole, lengths)
+        return (regions for _, regions in blocks_of(whole, lengths))
 
     def _side(self, name: str, field: Field, values: Mapping[str, Array]) -> Array:
         """The sides of jumps on which extremes over theta are; 0 where other inputs were averaged."""
