@@ -116,14 +116,13 @@ def _rows(table: Variables) -> dict[str, int]:
 
 
 def _checks(table: Variables) -> list[str]:
-    rows = [(n, INPUTS[n].least, INPUTS[n].limit) for n in table.parameters if n in INPUTS]
-    free = [*(n for n in ("theta0", "omega_start") if n in table.place), *table.inputs]
-    rows += [(n, None, "a finite number") for n in free]
-    least = [repr(-1e308 if one is None else one) for _, one, _ in rows]
-    return [
-        f"{{{table.place[n]}, {bound}, {quoted(n)}, {quoted(limit)}}}"
-        for (n, _, limit), bound in zip(rows, least, strict=True)
-    ]
+    result = []
+    for name in (*table.parameters, *table.inputs):
+        row = INPUTS.get(name) if name in table.parameters else None
+        least, limit = (None, "a finite number") if row is None else (row.least, row.limit)
+        bound = -1e308 if least is None else least
+        result.append(f"{{{table.place[name]}, {bound!r}, {quoted(name)}, {quoted(limit)}}}")
+    return result
 
 
 def _tables(table: Variables, made: Programs) -> list[str]:

@@ -14,6 +14,7 @@ from ...schema import SceneError
 
 FIXED = (*LENGTHS, *MASSES, *CENTRES, "g_X", "g_Y", "mu")  # parameters, in their order
 FORCES = ("F_X", "F_Y")
+FROZEN = ("parameter", "fixed")  # roles of what is set before the start
 NOMINAL = 1e-3  # of both states: below a thousandth an importer counts errors absolutely, as `simulate` does
 
 
@@ -51,25 +52,25 @@ def variables(content: Content, drive: str) -> Variables:
     given, moves = content.inputs, drive == "torque"
     loads = split(given)[1]
     check_outputs(content.outputs, loads)
-    parameters = [_parameter(n, first(given, n)) for n in FIXED if n not in CENTRES or n in given]
-    parameters.append(
-        Variable("theta0", "rad", "crank angle at the start", "parameter", "fixed", first(given, "theta"))
-    )
     speed = first(given, "omega" if "omega" in given else "omega0")
-    if moves:
-        parameters.append(
-            Variable("omega_start", "rad/s", "crank speed at the start", "parameter", "fixed", speed)
-        )
-    driven = {
-        "torque": Variable("torque", "N*m", "torque on the crank, positive like theta", "input", start=0.0),
-        "omega": Variable("omega", "rad/s", "angular speed of the crank", "input", start=speed),
-    }[drive]
-    inputs = [driven, *(_force(n, loads.get(n), first(given, n)) for n in FORCES)]
+    parameters = [
+        Variable(n, INPUTS[n].unit, INPUTS[n].meaning, *FROZEN, first(given, n))
+        for n in FIXED
+        if n not in CENTRES or n in given
+    ]
+    parameters.append(Variable("theta0", "rad", "crank angle at the start", *FROZEN, first(given, "theta")))
     motion = [Variable("theta", "rad", "crank angle, from the slider axis", _role("theta", content))]
     if moves:
-        motion.append(Variable("omega", "rad/s", "angular speed of the crank", _role("omega", content)))
-        motion.append(Variable("der(theta)", "rad/s", "rate of theta", "local", derivative="theta"))
-        motion.append(Variable("der(omega)", "rad/s^2", "angular acceleration", "local", derivative="omega"))
+        parameters.append(Variable("omega_start", "rad/s", "crank speed at the start", *FROZEN, speed))
+        driven = Variable("torque", "N*m", "torque on the crank, positive like theta", "input", start=0.0)
+        motion += [
+            Variable("omega", "rad/s", "angular speed of the crank", _role("omega", content)),
+            Variable("der(theta)", "rad/s", "rate of theta", "local", derivative="theta"),
+            Variable("der(omega)", "rad/s^2", "angular acceleration", "local", derivative="omega"),
+        ]
+    else:
+        driven = Variable("omega", "rad/s", "angular speed of the crank", "input", start=speed)
+    inputs = [driven, *(_force(n, loads.get(n), first(given, n)) for n in FORCES)]
     taken = {row.name for row in (*parameters, *inputs, *motion)}
     own = next((n for n in content.outputs if n in taken - {"theta", "omega"} or n == "time"), None)
     if own is not None:
@@ -113,10 +114,6 @@ def first(inputs: Mapping[str, Any], name: str) -> float:
 def _force(name: str, load: Any, start: float) -> Variable:
     more = "" if load is None else f", added to a {load.told().strip('<>')}"
     return Variable(name, "N", f"{INPUTS[name].meaning}{more}", "input", start=start)
-
-
-def _parameter(name: str, value: float) -> Variable:
-    return Variable(name, INPUTS[name].unit, INPUTS[name].meaning, "parameter", "fixed", value)
 
 
 def _role(name: str, content: Content) -> str:
