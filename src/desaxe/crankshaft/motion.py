@@ -9,7 +9,7 @@ and the signs are those with which alpha agrees.
 """
 
 from collections.abc import Callable, Mapping
-from math import nan
+from math import inf, nan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -37,9 +37,12 @@ class Piece(NamedTuple):
     loads: Actuation
     firing: float
 
-    def force(self, acting: Acting, *state: Any) -> Any:
-        """The value of one of its loads."""
-        slider = self.model.slider_of()
+    def force(
+        self, acting: Acting, t: Any, theta: Any, omega: Any, direction: float, low: float, high: float
+    ) -> Any:
+        """The value of one of its loads at angles of the shaft."""
+        slider, f = self.model.slider_of(), self.firing
+        state = t, theta - f, omega, direction, low - f, high - f
         return sum(factor * Called(part, slider).at(*state) for factor, part in acting.terms)
 
 
@@ -55,22 +58,24 @@ class ShaftTorque(Called):
         self.needs = tuple(dict.fromkeys(("theta", *needs, *(("omega",) if shaft.rubs else ()))))
         self.cycle = cycle({str(k): part for k, part in enumerate(parts) if isinstance(part, Load)})
 
-    def at(self, t: Any, theta: Any, omega: Any, direction: float = 0.0) -> Any:
+    def at(
+        self, t: Any, theta: Any, omega: Any, direction: float = 0.0, low: float = -inf, high: float = inf
+    ) -> Any:
         """The loads, and what friction takes."""
+        piece = direction, low, high
         push = sum(
-            one.force(one.loads.F_Y, t, theta - one.firing, omega, direction)
-            * one.model.slider(theta - one.firing)[2]
+            one.force(one.loads.F_Y, t, theta, omega, *piece) * one.model.slider(theta - one.firing)[2]
             for one in self.shaft.pieces
         )
-        return push - self._taken(t, theta, omega, direction, push) if self.shaft.rubs else push
+        return push - self._taken(t, theta, omega, piece, push) if self.shaft.rubs else push
 
-    def _taken(self, t: Any, theta: Any, omega: Any, direction: float, push: Any) -> Any:
+    def _taken(self, t: Any, theta: Any, omega: Any, piece: Any, push: Any) -> Any:
         """The torque of friction; NaN where no signs of the normal forces agree, or no forces balance."""
         still, steeper, weight, *_ = self.shaft.quantities(theta)
         torque = Called(self.shaft.drive.torque.value, self.shaft.slider_of()).at(t, theta, omega)
         push = push + torque - weight - 0.5 * steeper * omega**2
         rubbing = [one for one in self.shaft.pieces if one.model.mu]
-        guides = [_guide(one, t, theta - one.firing, omega, direction) for one in rubbing]
+        guides = [_guide(one, t, theta, omega, *piece) for one in rubbing]
         normal, by_alpha, arm, wedge = (np.array(rows) for rows in zip(*guides, strict=True))
         alpha, pressed = push / still, np.zeros(normal.shape)
         with np.errstate(all="ignore"):
@@ -101,9 +106,10 @@ class ShaftTorque(Called):
         return self.shaft.moves(theta)
 
 
-def _guide(one: Piece, t: Any, theta: Any, omega: Any, direction: float) -> tuple[Any, ...]:
+def _guide(one: Piece, t: Any, theta: Any, omega: Any, direction: float, *ends: float) -> tuple[Any, ...]:
     """Normal force without friction at alpha = 0, its slope by alpha, arm c and wedge k of a guide."""
-    forces = (one.force(acting, t, theta, omega, direction) for acting in one.loads[1:])
+    forces = [one.force(acting, t, theta, omega, direction, *ends) for acting in one.loads[1:]]
+    theta = theta - one.firing
     normal, by_alpha, _, phi = one.model.contact(theta, omega, *map(np.asarray, forces))
     turning, travel = direction or np.copysign(1.0, omega), one.model.slider(theta)[2]
     wedge = one.model.mu * one.model.branch * np.tan(phi) * np.sign(travel) * turning

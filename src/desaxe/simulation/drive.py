@@ -4,7 +4,7 @@ Compiled loops know numbers, tables and motors by their coefficients (`pieces`);
 """
 
 from collections.abc import Callable, Mapping
-from math import isfinite, isnan, nan
+from math import inf, isfinite, isnan, nan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +16,7 @@ from ..loads.arguments import arguments_of, by_position
 from ..loads.function import FunctionOverTheta
 from ..loads.load import Load, OverTheta, OverY, TableOverTheta
 from ..loads.motors import Motor
+from ..loads.table import polynomial
 from ..mechanism.closed import TURN
 from ..mechanism.closed.angles import dead_centres
 from ..mechanism.messages import listed, named
@@ -213,15 +214,26 @@ class Called:
         self.part, self.slider, self.needs = part, slider, needs_of(part)
         self.zero = slider.zero(part) if isinstance(part, Load) and part.centre else 0.0
 
-    def at(self, t: Any, theta: Any, omega: Any, direction: float = 0.0) -> Any:
-        """The values at instants; direction: of the crank, where it is not that of omega."""
-        part = self.part
+    def at(
+        self, t: Any, theta: Any, omega: Any, direction: float = 0.0, low: float = -inf, high: float = inf
+    ) -> Any:
+        """The values at instants.
+
+        direction   of the crank, where it is not that of omega
+        low, high   angles between which one piece holds, which goes on smoothly, or as it is there
+        """
+        part, middle = self.part, 0.5 * (low + high)
         if isinstance(part, float):
             return part
         if isinstance(part, Motor):
             return part.both(omega, part.numbers)[0]
+        if isinstance(part, TableOverTheta) and isfinite(middle):
+            reduced = part.table.reduced(middle)
+            piece = part.table.piece(reduced)
+            origin = middle - (reduced - part.table.origin(piece))
+            return polynomial(part.table.rows[piece], theta - origin)[0]
         if isinstance(part, OverTheta):
-            return part.value(theta)
+            return part.value(np.clip(theta, low, high))
         now = {"t": t, "theta": theta, "omega": omega}
         if not {"Y", "s", "V_C"}.isdisjoint(self.needs):
             now["Y"], now["s"], slope = self.slider.at(theta)
@@ -229,7 +241,12 @@ class Called:
         if isinstance(part, UserFunction):
             now.pop("way", None)
             return part.at(now)
-        return part.partials({**now, part.centre: self.zero}).value
+        now[part.centre] = self.zero
+        if isinstance(part, OverY) and isfinite(middle):
+            Y, _, slope = self.slider.at(middle)
+            place = float(part.along({"Y": Y, part.centre: self.zero}))
+            return part.held(part.along(now), int(part.piece(place, float(slope * direction))))[0]
+        return part.partials(now).value
 
     @property
     def kinks(self) -> tuple[float, Array]:

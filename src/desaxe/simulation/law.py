@@ -93,10 +93,10 @@ class Law:
             return part
 
         def values(direction: float, rows_at: int, _: int, __: int) -> None:
-            rows = _memory(rows_at, 4 * NODES).reshape(4, NODES)
+            rows = _memory(rows_at, 5 * NODES).reshape(5, NODES)
             instant = rows[0, 0] == rows[0, -1] and rows[1, 0] == rows[1, -1] and rows[2, 0] == rows[2, -1]
             t, theta, omega = rows[:3, :1] if instant else rows[:3]
-            rows[3] = part.at(t, theta, omega, direction)
+            rows[3] = part.at(t, theta, omega, direction, *rows[4, :2].tolist())
 
         needs = set(part.needs)
         varies = float(bool(needs - {"t", "omega"})), float(not needs.isdisjoint({"omega", "V_C"}))

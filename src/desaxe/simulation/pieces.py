@@ -131,6 +131,11 @@ class FunctionPieces(NamedTuple):
     period: float = TURN
     angles: Array = np.empty(0)
 
+    @property
+    def ends(self) -> bool:
+        """True where pieces do not go on smoothly behind their ends."""
+        return self.angles.size > 0 and self.addresses[0] == self.addresses[1]
+
     def sheet(self) -> LoadPieces:
         """The pieces of the function, which differ in the angles between which they hold."""
         starts = np.unique(self.angles % self.period) if self.angles.size else np.zeros(1)
@@ -194,7 +199,7 @@ class LawNumbers:
                 size = form.stiffness * self.flat["AB"]
             elif isinstance(form, FunctionPieces):
                 law[:, first : first + SLOTS] = rows[:, 0, 1 : 1 + SLOTS]
-                law[:, CALLS] = np.maximum(law[:, CALLS], 2.0 if form.angles.size else 1.0)
+                law[:, CALLS] = np.maximum(law[:, CALLS], 2.0 if form.ends else 1.0)
             else:
                 size = np.abs(rows[:, :, 3]).max(axis=1)
         if arm < 2.0:

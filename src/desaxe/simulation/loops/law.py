@@ -87,9 +87,9 @@ def piece(c: Any, theta: float, omega: float, Y: float) -> Any:
 
 
 def function_at(c: Any, rows: Any, slopes: Any, one: Any) -> int:
-    """A function at the nodes, inside of its piece, and its differences by angle and speed if asked for."""
-    moved: Any = empty((4, 16))
-    step = STEP
+    """A function at the nodes, told between which angles it holds, and its differences if asked for."""
+    moved: Any = empty((5, 16))
+    moved[4, 0], moved[4, 1], step = c[2], c[3], STEP
     for i in range(16):
         step = max(step, STEP * abs(rows[SPEED, i]))
     for k in range(3):
@@ -103,7 +103,6 @@ def function_at(c: Any, rows: Any, slopes: Any, one: Any) -> int:
                 moved[1, i] += STEP
             elif k == 2:
                 moved[2, i] += step
-            moved[1, i] = min(max(moved[1, i], c[2]), c[3])
         code = call(int64(c[1]), moved, 16, 16)
         if code != 0:
             return code
