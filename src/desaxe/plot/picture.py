@@ -1,6 +1,6 @@
 """`Picture`: what a function of `desaxe.plot` drew, to build on, to show in a notebook, and to save."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from io import BytesIO
 from os import PathLike
 from pathlib import Path
@@ -88,19 +88,12 @@ def save(
             field = SIGNED.get(target.suffix.lower())
             if field is not None:
                 options["metadata"] = {field: "desaxe", **options.get("metadata", {})}
-            _figure_of(figure).savefig(staged, dpi=dpi or 150.0, **options)
+            drawn: Any = getattr(figure, "figure", None)  # of a figure itself
+            if not hasattr(drawn, "savefig"):
+                requested = "expected a figure, or what desaxe.plot returns"
+                raise TypeError(f"save: {type(figure).__name__}: {requested}")
+            drawn.savefig(staged, dpi=dpi or 150.0, **options)
     return target
-
-
-def _figure_of(artists: Any) -> Any:
-    """The figure of a picture, of axes, or of the first of several; TypeError for anything else."""
-    first = artists
-    while isinstance(first, (Mapping, Sequence)):
-        first = next(iter(first.values() if isinstance(first, Mapping) else first), None)
-    figure = first if hasattr(first, "savefig") else getattr(first, "figure", None)
-    if not hasattr(figure, "savefig"):
-        raise TypeError(f"save: {type(artists).__name__}: expected a figure, or what desaxe.plot returns")
-    return figure
 
 
 def _save_animation(animation: Any, path: Path, dpi: float, options: Mapping[str, Any]) -> None:
