@@ -229,6 +229,19 @@ def test_a_load_that_grows_without_bound_at_a_limit():
     assert result["omega"][-1] == pytest.approx(-math.sqrt(70.0**2 - 2.0 * lost / inertia), rel=1e-6)
 
 
+def test_a_function_of_the_slider_up_to_a_limit():
+    """Next to the limit angle differences by the angle reach beyond it, where the slider has no position."""
+    design = {
+        "AB": 0.05663913651858137, "BC": 0.058461746867518684, "ec": -0.008, "m_crank": 0.3, "I_crank": 0.01,
+        "m_rod": 0.4993093709566365, "I_rod": 0.0005, "m_slider": 0.7663571141360432, "mu": 0.05,
+        "theta0": 0.0874111342590364, "omega_start": -6.0,
+    }  # fmt: skip
+    result = dx.simulate(torque=lambda Y, omega: 2.0 + 5.0 * Y - 0.05 * omega, t_end=0.4, **design)
+    assert result["status"] == 2
+    last = math.pi + math.asin((design["BC"] + design["ec"]) / design["AB"])
+    assert result["theta"][-1] == pytest.approx(last, rel=1e-12)
+
+
 def test_steps_that_end_next_to_a_limit():
     """Designs whose steps fall anywhere: each reaches its limit angle, at a time that tells no steps."""
     for omega in np.linspace(3.0, 3.4, 9).tolist():

@@ -107,7 +107,10 @@ def function_at(c: Any, rows: Any, slopes: Any, one: Any) -> int:
         if code != 0:
             return code
         for i in range(16):
-            one[k, i] = moved[3, i] if k == 0 else (moved[3, i] - one[0, i]) / (STEP if k == 1 else step)
+            one[k, i] = moved[3, i]
+            if k > 0:
+                slope = (moved[3, i] - one[0, i]) / (STEP if k == 1 else step)
+                one[k, i] = slope if abs(slope) < inf else 0.0  # beyond a limit angle there is none
     return 0
 
 
