@@ -41,6 +41,14 @@ def test_names_follow_from_the_request_and_nothing_is_computed(monkeypatch):
     assert len(pickle.dumps(first["a_C"].data.dask)) < 20_000
 
 
+@pytest.mark.parametrize("load", [dx.spring(300.0, free=0.1), dx.over_theta(np.sin), lambda Y, V_C: Y * V_C])
+def test_a_chunk_of_one_point_has_the_digits_of_the_grid_under_loads(load):
+    """The motion of the load, too, is that of a kernel there."""
+    inputs = {**INPUTS, "theta": ANGLES[::12], "m_slider": 1.0, "F_Y": load}
+    whole, lazy = dx.grid("T_in", **inputs), dx.grid("T_in", **inputs, chunks=1)
+    assert bits(lazy.compute(scheduler="synchronous")) == bits(whole)
+
+
 def test_chunks_and_out_are_not_for_each_other():
     with pytest.raises(TypeError, match="chunks= and out=: give one of them"):
         dx.grid("a_C", **INPUTS, chunks=3, out=np.empty(3))

@@ -210,9 +210,12 @@ def loaded(
     assert loads is not None
     made: dict[str, Any] = {}
     if loads.motion is not None:
-        inputs = {name: np.asarray(value) for name, value in inputs.items()}
         motion = call._replace(asked=loads.motion, inputs=loads.motion.inputs, loads=None)
-        made = loads.at(inputs, evaluate_arrays(motion, inputs, 1))
+        varying = {name: array for name, array in arrays.items() if name in motion.inputs}
+        shape = broadcast_shape(varying)
+        columns = outputs_for(motion.asked.shown, shape, None)
+        fill(motion, {**scalars}, varying, shape, list(columns.values()), 1)
+        made = loads.at({name: np.asarray(value) for name, value in inputs.items()}, columns)
     elif loads.functions:
         theta, shape = inputs["theta"], np.shape(inputs["theta"])
         result = loads.at({"theta": theta.reshape(-1) if shape and theta.size == max(shape) else theta})
