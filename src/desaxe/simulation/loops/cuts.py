@@ -49,7 +49,7 @@ def first_root(series: Any, start: float, at_zero: bool) -> float:
     size, rest = abs(start + series[0]), 0.0
     for j in range(1, 17):
         rest += abs(series[j])
-    if size > rest:
+    if size > rest or rest == 0.0:
         return NONE
     a = LEAVES if at_zero else 0.0
     at_a = value(series, start, a)
