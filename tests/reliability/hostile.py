@@ -151,6 +151,7 @@ def calls() -> dict[str, Call]:
                 **LENGTHS,
                 "ec": [0.0, 0.01],
                 "wrt": ["ec", "torque"],
+                "timeout": 5.0,
             },
             ("theta0", "omega_start", "rtol", "times", "derivative", "max_steps", "mu", "threads"),
         ),
@@ -385,6 +386,7 @@ def verdict_of(what: str, run: Callable[[], Any], value: Any, names: Sequence[st
             "quantity",
             "path",
             "press",  # the file
+            "(design)",  # a measure of the user's
         }
         named = any(word in str(error) for word in words) or isinstance(error, (MemoryError, TimeoutError))
         return (

@@ -100,6 +100,12 @@ REFUSED = {
     "a huge name": (lambda: dx.optimize(maximize="stroke", over={HUGE: (0, 1)}, AB=0.1, BC=0.3), ["bits"]),
     "a number as a name": (lambda: dx.optimize(maximize="stroke", over={5: (0, 1)}, AB=0.1, BC=0.3), ["5"]),
     "rows of two lengths": (lambda: peak(omega0=[[1.0], [1.0, 2.0]]), ["omega0", "an array of numbers"]),
+    "such rows of a fit": (lambda: dx.fit(SAMPLES, over={"AB": 0.1}, ec=0.0, BC=[[1.0], [1.0, 2.0]]), ["BC"]),
+    "a length that is a function": (
+        lambda: dx.simulate(**{**SIMULATED, "AB": abs, "ec": [0.0, 0.01]}),
+        ["AB", "expected a number"],
+    ),
+    "a huge bore": (lambda: dx.over_theta([0.0, 2.0, 4.0], [1.0, 2.0, 1.0], bore=1e300), ["over_theta"]),
     "a huge branch": (lambda: dx.scene({"mechanism": {"branch": HUGE}}), ["branch"]),
     "a device": (lambda: dx.scene("/dev/zero"), ["/dev/zero", "device"]),
 }
@@ -140,6 +146,20 @@ def test_slow_torques_end_with_what_there_is():
     result = dx.simulate(**{**SIMULATED, "torque": torque, "t_end": 1e9}, timeout=0.2)
     assert result["status"] == 4
     assert "timeout = 0.2" in result["message"]
+
+
+def test_a_timeout_holds_for_every_one_of_many_motions():
+    with pytest.raises(TimeoutError, match=r"timeout = 0.2"):
+        dx.simulate(**{**SIMULATED, "ec": [0.0, 0.01], "I_crank": 1e-300}, wrt=["ec"], timeout=0.2)
+
+
+def test_a_motion_of_many_turns_lists_the_first_dead_centres():
+    result = dx.simulate(**SIMULATED | {"omega_start": 1e9, "t_end": 1e-3, "I_crank": 0.1})
+    assert result["status"] == 0
+    assert result["message"].endswith("events list the first 100000 passages of each dead centre")
+    centres = [event.theta for event in result["events"]]
+    assert len(centres) == 200_000
+    np.testing.assert_allclose(np.diff(centres[::2]), 2 * np.pi, rtol=1e-7)
 
 
 def test_a_pipe_is_no_scene(tmp_path):

@@ -572,6 +572,30 @@ def test_scipy_is_not_loaded_before_it_is_needed():
     assert done.stdout.strip() == "False"
 
 
+@pytest.mark.parametrize(
+    "torque", [0.0, -0.0, lambda t: 0.0, dx.over_theta([0.0, 2.0], [0.0, 0.0], kind="step")]
+)
+@pytest.mark.parametrize("ec", [0.01, [0.01, 0.02]])
+def test_a_crank_that_nothing_moves_stays(torque, ec):
+    result = dx.simulate(torque=torque, t_end=0.5, theta0=1.0, ec=ec, AB=0.05, BC=0.2, m_slider=2.0)
+    assert (result["theta"] == 1.0).all()
+    assert np.all(result["status"] == 0)
+    if torque == 0.0:
+        slope = dx.simulate(
+            torque=0.0,
+            t_end=0.5,
+            theta0=1.0,
+            ec=ec,
+            AB=0.05,
+            BC=0.2,
+            m_slider=2.0,
+            wrt=["torque", "omega_start"],
+        )
+        M_eff = dx.evaluate("M_eff", theta=1.0, ec=ec, AB=0.05, BC=0.2, m_slider=2.0)
+        np.testing.assert_allclose(slope["theta_wrt_torque"][..., -1], 0.125 / M_eff, rtol=1e-9)
+        np.testing.assert_allclose(slope["theta_wrt_omega_start"][..., -1], 0.5, rtol=1e-9)
+
+
 @pytest.mark.parametrize("torque", [1.5, -1.5])
 def test_a_start_at_rest_has_the_load_of_the_way_in_which_it_starts(torque):
     """Without friction the drive torque is the torque given, also at the instant of the start."""

@@ -63,7 +63,8 @@ def piston_of(name: str, area: Any, bore: Any, ambient: Any, units: UnitSystem |
     if area is not None and bore is not None:
         raise TypeError(f"{name}: area and bore both say how large the piston is; give one of them")
     if bore is not None:
-        size = 0.25 * pi * read(BORE, bore, name, "a length", system) ** 2
+        width = read(BORE, bore, name, "a length", system)
+        size = 0.25 * pi * width * width
     else:
         size = read(AREA, area, name, "an area", system)
     less = 0.0 if ambient is None else read(AMBIENT, ambient, name, "a pressure", system)

@@ -38,6 +38,12 @@ def scalar(name: str, value: Any, unit: str, least: float = -inf, limit: str = "
     return read(Input(name, unit, "", least, limit), value, "simulate", limit)
 
 
+def refuse_function(name: str, value: Any) -> None:
+    """TypeError for a function in place of a length or a mass."""
+    if callable(value) and name not in ("F_X", "F_Y"):
+        raise TypeError(f"{name} = {shown(value)}: expected a number; torque, F_X and F_Y may be functions")
+
+
 def design_values(inputs: Mapping[str, Any]) -> dict[str, float]:
     """The lengths, masses and constant loads of one design; those that are not given are 0."""
     values = {}
@@ -45,10 +51,7 @@ def design_values(inputs: Mapping[str, Any]) -> dict[str, float]:
         value = inputs.get(name)
         if value is None and name in CENTRES:
             continue
-        if callable(value) and name not in ("F_X", "F_Y"):
-            raise TypeError(
-                f"{name} = {shown(value)}: expected a number; torque, F_X and F_Y may be functions"
-            )
+        refuse_function(name, value)
         if callable(value):
             values[name] = nan  # it varies: nothing may be folded
         else:

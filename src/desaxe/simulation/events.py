@@ -23,6 +23,7 @@ NEAR = 1e-9  # rad: an angle that a stretch starts from is not reached at once
 Q, V, W = range(3)
 NEVER = -1  # of an angle that does not end the motion
 STANDSTILL, JAM = "standstill", "friction jams"
+MOST_PASSAGES = 100_000  # of each dead centre that are listed
 
 
 class Mark(NamedTuple):
@@ -47,8 +48,11 @@ def marks_of(model: Model, until: Sequence[float]) -> list[Mark]:
     return marks
 
 
-def passages(model: Model, marks: Sequence[Mark], record: Record) -> list[Event]:
-    """The dead centres that a motion passes; on a panel the crank turns one way."""
+def passages(model: Model, marks: Sequence[Mark], record: Record) -> tuple[list[Event], bool]:
+    """The dead centres that a motion passes, and whether there were too many to list them all.
+
+    On a panel the crank turns one way.
+    """
     centres = [mark for mark in marks if mark.kind == "dead centre"]
     y = np.vstack([record.y, record.last])
     theta = np.asarray(model.coordinate.theta(y[:, Q]))
@@ -56,18 +60,23 @@ def passages(model: Model, marks: Sequence[Mark], record: Record) -> list[Event]
     way = np.sign(b - a)
     cut = record.ends[:, 0] == CUT_AT_ANGLE
     left = np.concatenate([[True], cut[:-1]])  # an angle that the panel starts from is behind it
-    passed = list[tuple[int, float, str]]()
+    passed, names, too_many = list[tuple[NDArray[np.intp], Array]](), list[str](), False
     for mark in centres:
         gap = ((mark.angle - a) * way) % TURN
         gap += np.where((gap <= np.where(left, NEAR, 0.0)) | (way == 0.0), TURN, 0.0)
         reach = np.abs(b - a) + np.where(cut, NEAR, 0.0)
-        for k in np.flatnonzero(gap <= reach).tolist():
-            for gone in gap[k] + TURN * np.arange(1.0 + (reach[k] - gap[k]) // TURN):
-                turns = round((a[k] + way[k] * gone - mark.angle) / TURN)
-                passed.append((k, mark.angle + TURN * turns, mark.which))
-    if not passed:
-        return []
-    index, angles, which = (np.array(column) for column in zip(*passed, strict=True))
+        turning = np.flatnonzero(gap <= reach)
+        times = (1.0 + (reach[turning] - gap[turning]) // TURN).astype(np.intp)
+        listed = np.clip(MOST_PASSAGES - (np.cumsum(times) - times), 0, times)
+        too_many |= bool((listed < times).any())
+        index = np.repeat(turning, listed)
+        before = np.arange(index.size) - np.repeat(np.cumsum(listed) - listed, listed)
+        turns = np.round((a[index] + way[index] * (gap[index] + TURN * before) - mark.angle) / TURN)
+        passed.append((index, mark.angle + TURN * turns))
+        names += [mark.which] * index.size
+    if not names:
+        return [], too_many
+    index, angles = (np.concatenate(columns) for columns in zip(*passed, strict=True))
     values = np.array([model.coordinate.q(angle) for angle in angles.tolist()])
     start, series = record.y[index, :W], record.series[index, :W]
 
@@ -86,10 +95,8 @@ def passages(model: Model, marks: Sequence[Mark], record: Record) -> list[Event]
     instants, stop = record.heads[index, 0] + s * h, record.heads[index, 6]
     instants = np.where(cut[index] & (np.abs(instants - stop) <= NEAR * h), stop, instants)
     columns = (instants, model.coordinate.theta(values), now.omega)
-    return [
-        Event("dead centre", t, angle, omega, name)
-        for t, angle, omega, name in zip(*(np.asarray(c).tolist() for c in (*columns, which)), strict=True)
-    ]
+    rows = zip(*(np.asarray(column).tolist() for column in columns), names, strict=True)
+    return [Event("dead centre", *row) for row in rows], too_many
 
 
 # ---- in words -------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from ..support.deadline import Deadline
 from .drive import TorqueDerivative
 from .events import (
     JAM,
+    MOST_PASSAGES,
     NEVER,
     STANDSTILL,
     Mark,
@@ -118,7 +119,9 @@ class March:
                 self.numbers,
             )
             self._kept.append(memory)
-        passed = passages(self.model, self.marks, self.record)
+        passed, too_many = passages(self.model, self.marks, self.record)
+        if too_many:
+            self.message += f"; events list the first {MOST_PASSAGES} passages of each dead centre"
         self.events = sorted([*passed, *self.events], key=lambda event: event.t)
         return self
 

@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
+from copy import copy
 from math import inf, nan
 from types import MappingProxyType
 from typing import Any
@@ -24,7 +25,7 @@ from ..runtime.threads import run_parts
 from ..support.deadline import Deadline
 from ..support.interrupts import stopped_early
 from ..support.progress import Portions, progress_bar
-from .checks import SMALL, follows_the_slider
+from .checks import SMALL, follows_the_slider, refuse_function
 from .coordinate import coordinate_of
 from .drive import ROLES, Acting
 from .events import NEVER
@@ -167,9 +168,10 @@ def _one_by_one(
             if motor is not None:
                 design["torque"] = motor.of_design({n: design[n] for n in motor.numbers})
             inputs = {name: design.get(name) for name in given}
-            ask.deadline.check()
             begin = {name: design[name] for name in starts}
-            answers.put(row, one_motion(ask, inputs, begin, answers.t))
+            # A motion lifts its deadline where it ends.
+            answers.put(row, one_motion(ask._replace(deadline=copy(ask.deadline)), inputs, begin, answers.t))
+            ask.deadline.check()
             message.add(1)
 
 
@@ -262,6 +264,8 @@ def arrays_of(
 
     motor   the parameters of a motor
     """
+    for name in (*LENGTHS, *LOADS):
+        refuse_function(name, inputs.get(name))
     arrays = {
         name: as_array(name, 0.0 if value is None and name in LOADS else value, LENGTHS, ("simulate",))
         for name in (*LENGTHS, *LOADS)

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from ...mechanism.catalogue import quantity
-from ...mechanism.inputs import TINY, Input
+from ...mechanism.inputs import INPUTS, TINY, Input
 from ...mechanism.keywords import with_known_keywords
-from ...mechanism.read import read
+from ...mechanism.read import read, read_array
 from ...mechanism.spelling import did_you_mean
 from ...runtime.request import check_common
 from ...support.checks import whole_number
@@ -90,9 +90,10 @@ def fit(
     whole_number("seed", seed, 0, 2**32 - 1)
     read = read_data(data, "omega0" not in state)
     for name, value in fixed.items():
-        if np.ndim(value) and np.size(value) not in (1, read.size) and not callable(value):
+        array = read_array(INPUTS[name], value) if isinstance(value, (list, tuple)) else value
+        if np.ndim(array) and np.size(array) not in (1, read.size) and not callable(value):
             raise ValueError(
-                f"{name}: {np.size(value)} values, and a fit is of one machine: give one, or a range in over"
+                f"{name}: {np.size(array)} values, and a fit is of one machine: give one, or a range in over"
             )
     if read.course == "theta" and "omega" in read.measured and not {"omega", "omega0"} & state.keys():
         read, fixed = _with_speeds(read, fixed)
