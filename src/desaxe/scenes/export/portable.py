@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from textwrap import wrap
 from types import MappingProxyType
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 from ...compiler.languages.protocol import Forms, Module, Symbol
 from ...compiler.passes.double_double import double_double
@@ -168,23 +168,7 @@ def _facts(
     return ("", *lines, "", *WITHOUT_VALUE)
 
 
-class Asked(Protocol):
-    """The inputs of a request: a scene's content, or a slider of a crankshaft."""
-
-    @property
-    def inputs(self) -> Mapping[str, Any]:
-        """Numbers, loads, and tuples for what stays open."""
-
-    @property
-    def branch(self) -> int:
-        """The assembly."""
-
-    @property
-    def accuracy(self) -> str:
-        """Standard or extended."""
-
-
-def asked_of(content: Asked, names: Iterable[str]) -> PortableRequest:
+def asked_of(content: Content, names: Iterable[str]) -> PortableRequest:
     """The request of a scene for names; an absent input without effect is 0."""
     shown = tuple(dict.fromkeys(names))
     given, loads = split(content.inputs)

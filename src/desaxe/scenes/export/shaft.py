@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from hashlib import sha256
 from math import nan
-from typing import Any, NamedTuple
+from typing import Any
 
 from ...compiler.languages.protocol import Forms, Module, Symbol
 from ...compiler.operations import Content as TableContent
@@ -28,19 +28,12 @@ from ...mechanism.status import PointStatus
 from ...runtime.specialise import specialise
 from ...support.version import version
 from ...support.written import UNSEALED
+from ..content import Content
 from ..schema import SceneError
 from .loaded import require_tables
 from .portable import ANY, WITHOUT_VALUE, Order, asked_of
 
 MOTION = ("theta", "omega0", "omega", "alpha")
-
-
-class SliderRequest(NamedTuple):
-    """The inputs of a slider, as `asked_of` takes them."""
-
-    inputs: Mapping[str, Any]
-    branch: int
-    accuracy: str = "standard"
 
 
 def module_of_shaft(
@@ -214,7 +207,10 @@ class _Writer:
             self.tables[start + name] = table.arrays()
         motion = {"theta": ANY, "omega": ANY, "alpha": ANY}
         branch = int(inputs.pop("branch", 1))
-        asked = asked_of(SliderRequest({**inputs, **motion}, branch), names)
+        slider = Content(
+            title="", outputs=(*names,), accuracy="standard", branch=branch, inputs={**inputs, **motion}
+        )
+        asked = asked_of(slider, names)
         firing = 0.0 if k == SHAFT else float(self.sliders.members[k].firing)
         angle = self.add(f"{start}angle", "sub", "theta", firing) if firing else "theta"
         values = {**state, "theta": angle}
