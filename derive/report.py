@@ -10,7 +10,7 @@ from desaxe.compiler.passes.trigonometry import expand_trigonometry
 from desaxe.support.text_table import table
 
 from .build import Derivation
-from .groups import GROUPS, Group
+from .groups import GROUPS
 from .quantities import QUANTITIES
 from .write import module_of
 
@@ -23,7 +23,7 @@ def report(derivation: Derivation) -> str:
     whole, frozen = len(derivation.program.lines), len(derivation.frozen.lines)
     parts = [f"as frozen {frozen} operations; same values merged {whole}, for {len(derivation.names)} names"]
     titles = ["module", "seconds", "lines", "results", "operations", "with wide margins"]
-    parts.append("\nmodules:\n" + _table(titles, [_module(derivation, group) for group in GROUPS]))
+    parts.append("\nmodules:\n" + _table(titles, _modules(derivation)))
     for title, fixed in (("branch = 1", GENERAL), ("branch = 1, ec = 0, alpha = 0", CONCENTRIC)):
         rows = [_row(derivation, name, fixed) for name in QUANTITIES]
         steps = ["sliced", *PASSES]
@@ -32,14 +32,20 @@ def report(derivation: Derivation) -> str:
     return "\n".join(parts)
 
 
-def _module(derivation: Derivation, group: Group) -> list[object]:
-    start = perf_counter()
-    module, docstring = module_of(derivation, group, "")
-    text = emit_folder({group.name: (module, docstring)}, "", derivation.trigonometry)[group.name]
-    seconds = f"{perf_counter() - start:.2f}"
-    programs = module.forms.stable, module.forms.plain or module.forms.stable
-    sizes = [len(program.lines) for program in programs]
-    return [group.name, seconds, len(text.splitlines()), len(group.outputs), *sizes]
+def _modules(derivation: Derivation) -> list[list[object]]:
+    """A row for each module: the seconds of its lines, and sizes."""
+    modules, seconds = {}, {}
+    for group in GROUPS:
+        start = perf_counter()
+        modules[group.name] = module_of(derivation, group, "")
+        seconds[group.name] = f"{perf_counter() - start:.2f}"
+    texts = emit_folder(modules, "", derivation.trigonometry)
+    rows: list[list[object]] = []
+    for name, (module, _) in modules.items():
+        programs = module.forms.stable, module.forms.plain or module.forms.stable
+        size, sizes = len(texts[name].splitlines()), [len(program.lines) for program in programs]
+        rows.append([name, seconds[name], size, len(module.outputs), *sizes])
+    return rows
 
 
 def _row(derivation: Derivation, name: str, fixed: Mapping[str, float]) -> list[object]:
