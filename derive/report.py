@@ -38,6 +38,7 @@ def _modules(derivation: Derivation) -> list[list[object]]:
     for group in GROUPS:
         start = perf_counter()
         modules[group.name] = module_of(derivation, group, "")
+        emit_folder({group.name: modules[group.name]}, "", derivation.trigonometry)
         seconds[group.name] = f"{perf_counter() - start:.2f}"
     texts = emit_folder(modules, "", derivation.trigonometry)
     rows: list[list[object]] = []
