@@ -42,9 +42,9 @@ def kinds(result):
     ],
 )
 def test_the_end_of_a_motion(design, torque, theta0, omega_start):
-    theta, omega = true_end(design, torque, theta0, omega_start, 0.3, 80)
+    theta, omega = true_end(design, torque, theta0, omega_start, 0.15, 40)
     result = dx.simulate(
-        torque=torque, t_end=0.3, theta0=theta0, omega_start=omega_start, rtol=1e-11, **design
+        torque=torque, t_end=0.15, theta0=theta0, omega_start=omega_start, rtol=1e-11, **design
     )
     assert result["status"] == 0
     assert abs(result["theta"][-1] - theta) < 1e-9
