@@ -35,6 +35,7 @@ class Shifts:
         self.run, self.model, self.duration = run, run.model, run.t
         self.tangents, self.wrt = tangents, tangents.wrt
         self.notes: list[str] = []
+        self.rests = run.record.rests.tolist()
         self.of_centres: dict[str, Array] = {}
         ends = np.vstack([run.record.y, run.record.last]).T
         self.theta, self.omega = state_of(self.model, *ends[: V + 1])
@@ -46,9 +47,9 @@ class Shifts:
     def jump(self, before: int, after: int, y: Array) -> Array:
         """By how much q_p and v_p (y: before) jump from one panel to the next."""
         none, record = np.zeros(y.shape), self.run.record
-        if record.rests[before]:
+        if self.rests[before]:
             return none  # it breaks away without a jump of alpha, or at an instant of its own
-        if record.rests[after]:
+        if self.rests[after]:
             return y * [[0.0], [-1.0]]
         old, new = record.laws[[before, after]]
         theta, omega = self.theta[after], self.omega[after]

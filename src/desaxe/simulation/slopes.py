@@ -124,9 +124,12 @@ class MotionSlopes:
         """The series on panels for the starts (1, 0) and (0, 1) and for each parameter."""
         laws, nodes = self.record.laws[self.number[piece]], self._nodes(start, h)
         signs = np.stack([laws[:, DIRECTION] * laws[:, SIDE], laws[:, PRESSED]])
-        t, q, v = (part.reshape(-1) for part in nodes)
-        alpha = alpha_of(self.run.law.at(t, q, v, laws, np.arange(piece.size).repeat(NODES)))
-        rates = self.tangents.rates(*nodes, signs[:, :, None], alpha.reshape(nodes[0].shape))
+        alpha = None
+        if self.tangents.several:
+            t, q, v = (part.reshape(-1) for part in nodes)
+            rows = self.run.law.at(t, q, v, laws, np.arange(piece.size).repeat(NODES))
+            alpha = alpha_of(rows).reshape(nodes[0].shape)
+        rates = self.tangents.rates(*nodes, signs[:, :, None], alpha)
         jacobian, forcing = rates[:, :2].transpose(2, 0, 1, 3), rates[:, 2:].transpose(2, 0, 3, 1)
         width = h[:, None, None, None]
         matrix = -width[..., None] * RUNNING[:, None, :] * jacobian[:, :, None]
@@ -150,7 +153,7 @@ class MotionSlopes:
         for row, (k, gain, forced) in enumerate(rows):
             if law[k] != law[before] and row:
                 y = y + self.shifts.jump(before, k, y)
-            if self.record.rests[k] and self.record.heads[k, 6] > self.record.heads[k, 0]:
+            if self.shifts.rests[k] and self.record.heads[k, 6] > self.record.heads[k, 0]:
                 y = y * [[1.0], [0.0]]  # it has not only stopped where it started
             before, begin[row] = k, y
             y = y + gain @ y + forced

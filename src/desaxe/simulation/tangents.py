@@ -124,7 +124,7 @@ class Tangents:
         rows[1] += 1.0 / root
         return by_theta, rows
 
-    def rates(self, t: Array, q: Array, v: Array, signs: Array, alpha: Array) -> Array:
+    def rates(self, t: Array, q: Array, v: Array, signs: Array, alpha: Any) -> Array:
         """The derivatives of the rates of q and v: two rows of them.
 
         signs   of the slider's velocity over that of the crank, and of the normal force, held under friction
