@@ -357,7 +357,7 @@ def same(press):
 @pytest.mark.parametrize(
     ("machine", "motor", "settles"),
     first(
-        3,
+        2,
         [
             (
                 punched({**SLENDER, "I_crank": 0.039}, 0.013, -322.0, -193.0),

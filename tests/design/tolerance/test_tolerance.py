@@ -281,6 +281,9 @@ def test_an_input_that_a_quantity_does_not_depend_on_counts_for_nothing():
     for key in ("value", "gradient", "contributions", "worst_case"):
         assert with_mass[key] == without[key]
     alone = {name: value for name, value in varied.items() if name in ("theta", "omega0")}
+    for name in ("stroke", "margin", ("max", "phi"), ("rms", "Y")):
+        free = dx.tolerance(name, ec=0.0, AB=0.125, BC=0.35, omega0=plus_minus(9.0, 1.0), samples=20)
+        assert (free["status"], free["first_order"]["std"], free["gradient"]["omega0"]) == (0, 0.0, 0.0)
     exact = dx.tolerance("a_C", ec=0.0, AB=0.125, BC=0.35, m_slider=plus_minus(1.0, 0.1), **alone)
     assert exact["first_order"]["std"] == 0.0
     assert exact["monte_carlo"]["std"] < 1e-12 * abs(exact["value"])  # that of equal numbers rounds

@@ -31,9 +31,10 @@ class SampledQuantity(NamedTuple):
 
     def values(self, columns: Mapping[str, Any]) -> Array:
         """The values over samples; NaN where undefined."""
-        if not self.at_point:
-            return np.asarray(self._measured(columns).value, float)
-        result = evaluate(self.at_point, branch=self.branch, **self.fixed, **columns)
+        if self.at_point:
+            result = evaluate(self.at_point, branch=self.branch, **self.fixed, **columns)
+        else:
+            result = np.asarray(self._measured(columns).value, float)
         return np.broadcast_to(result, len(next(iter(columns.values()))))
 
     def slopes(self, columns: Mapping[str, Any]) -> Array:
