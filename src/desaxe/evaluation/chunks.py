@@ -35,6 +35,8 @@ def chunk_lengths(chunks: Any, sizes: Mapping[str, int], points: int) -> dict[st
         requested = {name: chunks.get(name, -1) for name in sizes}
     else:
         requested = dict.fromkeys(sizes, chunks)
+        if not sizes and not _is_auto(chunks):  # checked, though nothing is left to cut
+            _lengths("every axis", chunks, 1)
     known_lengths = {n: _lengths(n, w, sizes[n]) for n, w in requested.items() if not _is_auto(w)}
     room = max(1, points // prod(max(own, default=1) or 1 for own in known_lengths.values()))
     for name in reversed([name for name in sizes if name not in known_lengths]):

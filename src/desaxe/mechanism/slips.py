@@ -12,6 +12,7 @@ from math import isclose, pi
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from ..support.lazy import np
 from ..support.shown import with_unit
 from ..units.parse import factor_to_si
 from ..units.system import Conversion
@@ -114,10 +115,12 @@ def _offset(written: Any, units: UnitSystem, inputs: Mapping[str, Any]) -> Itera
 
 def _forces(inputs: Mapping[str, Any], units: UnitSystem) -> Iterator[Slip]:
     """Forces, numbers and tables, that no rod of this length could carry."""
-    rods: Any = inputs.get("BC")
-    length = max(_numbers(rods.tolist() if hasattr(rods, "tolist") else rods), default=0.0)
-    for name in FORCES if SHORTEST < length <= FARTHEST else ():
-        value = inputs.get(name)
+    loads = {name: inputs[name] for name in FORCES if inputs.get(name) is not None}
+    rods: Any = inputs.get("BC") if loads else 0.0
+    if hasattr(rods, "tolist"):
+        rods = np.ravel(rods)[:MOST_LOOKED_AT].tolist()
+    length = max(_numbers(rods), default=0.0)
+    for name, value in loads.items() if SHORTEST < length <= FARTHEST else ():
         numbers = _numbers(value) if isinstance(value, (int, float)) else []
         size = max(map(abs, numbers), default=getattr(value, "largest", 0.0))
         stress = 4.0 * size / length**2

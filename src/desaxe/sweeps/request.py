@@ -126,7 +126,7 @@ def sweep_of(request: SweepRequest) -> Sweep:
     chunk = uniform(chunk_lengths(request.chunks, plan.sizes, points))
     sweep = Sweep(plan, chunk, memory, plan.empty(), identity(plan, checked, peaks))
     few = memory is not None and points < FEWEST_POINTS
-    if request.chunks == "auto" and few and sweep.chunks > MOST_CHUNKS:
+    if isinstance(request.chunks, str) and few and sweep.chunks > MOST_CHUNKS:
         raise MemoryError(
             f"memory: {size_text(memory or 0)} make {sweep.chunks} chunks of {points} points, a file each; "
             'give more, such as "100 MB"'
