@@ -161,13 +161,14 @@ def test_over_masses():
     "goal",
     [
         {"minimize": "max_pressure_angle"}, {"maximize": "min_transmission_angle"},
-        {"minimize": "time_ratio"}, {"maximize": "margin"},
+        {"minimize": "time_ratio"}, {"maximize": "margin"}, {"minimize": "stroke"},
     ],
 )  # fmt: skip
 def test_kinks_at_no_eccentricity(goal):
     best = dx.optimize(over={"ec": (-0.1, 0.2)}, **goal, **A)
     assert best["ec"] == pytest.approx(0.0, abs=1e-12)
     assert (best["status"], best["active"]) == (0, {})
+    assert "inside of all limits" in best["message"]
 
 
 def test_inside_of_all_limits():

@@ -2,6 +2,6 @@
 
 optimize  the public call: one objective, or the Pareto front of several
 problem   objectives, space and limits, read and checked; values and gradients
-search    scan, SLSQP, and a search without derivatives where these say nothing
+search    scan, SLSQP, the last digits, and a search without derivatives
 optimum   the result: multipliers, active limits, message
 """

@@ -1,4 +1,4 @@
-"""The search behind `optimize`: scan, SLSQP from the best points, COBYLA where slopes say nothing.
+"""The search behind `optimize`: scan, SLSQP from the best points, Newton on the optimality conditions.
 
 Made as small as possible is the largest of the problem's pieces (one, mostly), in the variable t:
 
@@ -14,7 +14,7 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize, nnls
+from scipy.optimize import minimize, nnls, root
 from scipy.stats import qmc
 
 from ...support.forks import IMPORTS
@@ -28,8 +28,8 @@ BROKEN = 1e-8  # of its scale: how far these may break a limit
 SATISFIED = 1e-7  # of its scale: a limit that is broken by less is kept
 SETTLED = 1e-4  # residual of the optimality conditions
 LEVEL = 1e-6  # scaled slopes below this are none
-STEPS, LAST_STEPS = 100, 10
-FLAT, FINEST = 1e-10, 1e-18  # of the scale: a smaller gain ends a run, and one to the last digits
+STEPS = 100
+FLAT = 1e-10  # of the scale: a smaller gain ends a run
 WORST = 1e3  # of the scale: what a design counts that cannot be judged
 
 
@@ -104,7 +104,7 @@ class LocalSearch:
         worst = np.where(np.arange(value.size) < self.count, WORST, -WORST)
         return np.where(np.isfinite(value), value, worst), np.where(np.isfinite(slope), slope, 0.0)
 
-    def run(self, start: Array, pinned: int | None = None, flat: float = FLAT) -> Candidate:
+    def run(self, start: Array, pinned: int | None = None) -> Candidate:
         """SLSQP from one point; `pinned` is the index of a limit to stay on."""
         n, m, several = len(start), self.count, self.count > 1
         equal = np.append(np.zeros(m, bool), self.equal)
@@ -133,7 +133,7 @@ class LocalSearch:
                 for name, kind in kinds
                 if kind.any()
             ],
-            options={"maxiter": STEPS if flat == FLAT else LAST_STEPS, "ftol": flat},
+            options={"maxiter": STEPS, "ftol": FLAT},
         )
         z = np.clip(np.nan_to_num(answer.x[:n], nan=0.5), 0.0, 1.0)
         overshot = [k for k in self.margins if self.scaled(z)[0][m + k] < 0.0]
@@ -155,14 +155,49 @@ class LocalSearch:
 
     def settled(self, result: Candidate) -> Candidate:
         """A candidate to its last digits; without derivatives where these say nothing."""
-        snapped = np.where(result.z <= NEAR, 0.0, np.where(result.z >= 1.0 - NEAR, 1.0, result.z))
-        best = result
-        for other in (self.run(snapped, flat=FINEST), self.judged(snapped)):
-            worth = other.violation <= max(best.violation, 1e-9) and other.residual <= max(
-                best.residual, 1e-9
-            )
-            best = other if worth and np.isfinite(other.value) else best
+        z = self._polished(result)
+        other = self.judged(np.clip(z, 0.0, 1.0))
+        worth = other.violation <= max(result.violation, 1e-9) and other.residual <= max(
+            result.residual, 1e-9
+        )
+        near = bool(np.abs(z - result.z).max() < 1e-2) and bool(((z >= 0.0) & (z <= 1.0)).all())
+        best = other if worth and near and np.isfinite(other.value) else result
         return best if best.residual <= SETTLED else self._probed(best)
+
+    def _polished(self, result: Candidate) -> Array:
+        """The optimality conditions with these limits active, solved for the last digits."""
+        m = self.count
+        value, slope = self.scaled(result.z)
+        live = np.flatnonzero(value[:m] >= value[:m].max() - 1e-4 * max(1.0, abs(value[:m].max())))
+        lambdas = result.multipliers[: len(self.limits)]
+        active = np.flatnonzero(self.equal | ((np.abs(value[m:]) <= NEAR) & (lambdas != 0.0)))
+        free = np.flatnonzero((result.z > NEAR) & (result.z < 1.0 - NEAR))
+        fixed = np.where(result.z <= NEAR, 0.0, np.where(result.z >= 1.0 - NEAR, 1.0, result.z))
+        if not free.size or len(live) - 1 + len(active) > free.size:
+            return fixed
+
+        def place(y: Array) -> Array:
+            z = fixed.copy()
+            z[free] = y[: free.size]
+            return z
+
+        size = max(float(np.abs(slope[live]).max()), 1e-300)
+
+        def conditions(y: Array) -> Array:
+            value, slope = self.scaled(place(y))
+            weights = np.append(
+                1.0 - y[free.size : free.size + live.size - 1].sum(), y[free.size :][: live.size - 1]
+            )
+            forces = y[free.size + live.size - 1 :]
+            balance = weights @ slope[live] / size - forces @ slope[m + active]
+            return np.concatenate([balance[free], value[live[1:]] - value[live[0]], value[m + active]])
+
+        weights = np.full(live.size - 1, 1.0 / live.size)
+        begin = np.concatenate(
+            [result.z[free], weights, lambdas[active] * self.scale[m + active] / size / self.scale[0]]
+        )
+        answer = root(conditions, begin, method="hybr", options={"xtol": 1e-13, "maxfev": 60})
+        return place(answer.x)
 
     def _probed(self, best: Candidate) -> Candidate:
         """Continue from an unsettled point without derivatives: two peaks may tie in a kink."""
