@@ -48,6 +48,24 @@ def test_sensitivities_are_those_of_60_digits(parameter):
     assert result[f"omega_wrt_{parameter}"][0] == pytest.approx(omega, rel=1e-12)
 
 
+@pytest.mark.parametrize("mu", [0.0, 0.08])
+def test_the_numbers_of_an_induction_motor(mu):
+    """Differences of motions; the torque of the motor is part of what friction takes."""
+    numbers = {"breakdown_torque": 5.0, "breakdown_slip": 0.3, "synchronous_speed": 150.0, "gear": 6.0}
+    call = {**PRESS, "mu": mu, "t_end": 0.4, "times": [0.4]}
+    result = dx.simulate(torque=dx.kloss(**numbers), wrt=[*numbers], **call)
+    for name, number in numbers.items():
+        h = 1e-4 * number
+        ends = [
+            dx.simulate(torque=dx.kloss(**{**numbers, name: number + side * h}), rtol=1e-13, **call)
+            for side in (1.0, -1.0)
+        ]
+        for key in ("theta", "omega"):
+            slope = (ends[0][key][0] - ends[1][key][0]) / (2.0 * h)
+            assert result[f"{key}_wrt_{name}"][0] == pytest.approx(slope, rel=2e-6)
+    assert result.units["theta_wrt_breakdown_torque"] == "rad/N/m"
+
+
 def test_standstills_of_a_pendulum():
     """theta'' = -(m g r/I) sin(theta), with r half the crank: the quarter period is K(sin(a/2))/w."""
     wrt = ["theta0", "g_Y", "m_crank", "I_crank", "AB"]

@@ -188,6 +188,7 @@ def read_wrt(wrt: Any, inputs: Mapping[str, Any]) -> tuple[str, ...]:
     requested = (wrt,) if isinstance(wrt, str) else several(wrt)
     loads = {n: a for n, a in inputs.items() if isinstance(a, OfMotion)}
     own = [f"{force}.{number}" for force, load in loads.items() for number in load.numbers]
+    own += inputs["torque"].numbers if isinstance(inputs.get("torque"), Motor) else ()
     for name in requested:
         if name in own:
             continue

@@ -69,8 +69,8 @@ def simulate(
     times        instants of the histories [s]; by default 1001 from start to end
     until        crank angle or angles [rad]: the first that is reached ends the motion
     wrt          parameters by which the motion is differentiated: inputs of the mechanism that are numbers,
-                 "theta0", "omega_start", "torque" where it is a number, and numbers of loads such as
-                 "F_Y.stiffness"
+                 "theta0", "omega_start", "torque" where it is a number, numbers of loads such as
+                 "F_Y.stiffness", and those of `kloss` such as "gear"
     derivative   for wrt, of a torque that is a function: one of t, theta, omega that returns dT/dtheta
                  and dT/domega; and dT/dt, without which the instants of "break-away" have no derivative
     max_steps    more panels than this are a failure

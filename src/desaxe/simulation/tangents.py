@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
 from ..loads.along_motion import OfMotion
+from ..loads.motors import Motor
 from ..mechanism.catalogue import has
 from ..mechanism.names import sensitivity
 from .model import Model
@@ -38,7 +39,10 @@ class Tangents:
         self.several = "sliders" in inputs  # whose sums have derivatives by every input
         if self.several and (still := inputs["sliders"].without_speed()):
             self.still = {"sliders": still}
-        self.of_design = [p for p in wrt if p not in (*STARTS, "torque")]
+        torque = model.drive.torque.value
+        self.motor = torque if isinstance(torque, Motor) else None
+        own = self.motor.numbers if self.motor else {}
+        self.of_design = [p for p in wrt if p not in (*STARTS, "torque", *own)]
         arc = model.coordinate
         self.of_limits = [self.limit(end) for end in (arc.first, arc.last)] if arc.half else []
 
@@ -142,6 +146,8 @@ class Tangents:
         torque, *slopes = (np.broadcast_to(part, t.size).reshape(t.shape) for part in flat)
         of_torque = slopes[0] * by_theta + slopes[1] * by_omega
         of_torque[2:] += self.flags("torque").reshape(-1, *[1] * t.ndim)
+        for name, by_number in (self.motor.by(omega, self.motor.numbers) if self.motor else {}).items():
+            of_torque[2:] += np.multiply.outer(self.flags(name), by_number)
         push = torque - known["T_in"]
         of_push = of_torque - self._rows("T_in", known, by_theta)
         if self.still:

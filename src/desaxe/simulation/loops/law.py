@@ -87,7 +87,7 @@ def piece(c: Any, theta: float, omega: float, Y: float) -> Any:
 
 
 def function_at(c: Any, rows: Any, slopes: Any, one: Any) -> int:
-    """Values of a function at the nodes, and differences if asked for; it takes the ends of its piece, too."""
+    """Values of a function at the nodes, and differences if asked for; it takes the ends of its piece too."""
     moved: Any = empty((5, 16))
     moved[4, 0], moved[4, 1], step = c[2], c[3], STEP
     for i in range(16):
