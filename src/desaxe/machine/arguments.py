@@ -17,7 +17,7 @@ from ..units.text import PLUS_MINUS, with_unit_of
 
 # Arguments that carry no unit of their own name: what they are about is said by their keys.
 EQUATION = "=="  # of a limit of `keep`
-BY_KEY = ("over", "keep", "where", "changes", "sigma")
+BY_KEY = ("over", "keep", "where", "changes", "sigma", "nuisance")
 VALUES = {"Y", "s", "V_C", "a_C", "V_outward", "V_inward"}  # by which an answer is asked for
 
 
@@ -52,8 +52,9 @@ def in_unit_of(name: str, value: Any, system: UnitSystem) -> Any:
 
 
 def _quantity_of(measure: Any) -> str:
-    """The name whose unit the limits of a measure are in: of a peak, the quantity."""
-    return str(measure[-1]) if isinstance(measure, (tuple, list)) else str(measure)
+    """The name whose unit the limits of a measure are in: of a peak or a bias, the quantity."""
+    name = str(measure[-1] if isinstance(measure, (tuple, list)) else measure)
+    return name.removesuffix("_bias").removesuffix("_offset")
 
 
 def _converted(system: UnitSystem, name: str, value: Any) -> Any:

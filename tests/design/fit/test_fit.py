@@ -84,17 +84,50 @@ def test_what_the_data_leave_open_is_named():
     assert result["value"]["AB"] * result["value"]["omega0"] == pytest.approx(0.125 * 150.0)
 
 
+SPEEDS = np.linspace(100.0, 180.0, THETA.size)
+
+
 def test_a_measured_speed_of_the_crank_is_an_input():
     """Beside the angles, one where it is not known; with a given speed it is measured as any other."""
-    omega = np.linspace(100.0, 180.0, THETA.size)
+    omega = SPEEDS.copy()
     data = {"theta": THETA, "V_C": dx.evaluate("V_C", theta=THETA, omega=omega, **MACHINE)}
+    over = {"ec": 0.0, "AB": 0.1}
+    fixed = dx.fit({**data, "V_C": [math.nan, *data["V_C"][1:]]}, over=over, BC=MACHINE["BC"], omega=omega)
     omega[3] = np.nan
-    result = dx.fit({**data, "omega": omega}, over={"ec": 0.0, "AB": 0.1}, BC=MACHINE["BC"])
+    result = dx.fit({**data, "omega": omega}, over=over, BC=MACHINE["BC"])
     for name in ("ec", "AB"):
         assert result["value"][name] == pytest.approx(MACHINE[name], rel=1e-9)
+        assert fixed["value"][name] == pytest.approx(MACHINE[name], rel=1e-9)
     assert np.flatnonzero(np.isnan(result["residuals"]["V_C"])).tolist() == [3]
     with pytest.raises(ValueError, match="sigma: V_C, omega are measured"):
         dx.fit({**data, "omega": omega}, over=OVER, omega0=150.0)
+    value, _ = result.predict(theta=[1.0, 2.0], omega=[30.0, 40.0])["V_C"]
+    expected = [float(truth("V_C", theta=a, omega=w, branch=1, **MACHINE)) for a, w in ((1, 30), (2, 40))]
+    assert value == pytest.approx(expected, rel=1e-9)
+    assert result.plot()["V_C"].get_xydata().shape == (THETA.size, 2)
+    with pytest.raises(TypeError, match="predict: omega= varied with the samples"):
+        result.predict(theta=[1.0, 2.0])
+
+
+def test_times_beside_the_angles_have_the_speed():
+    """A crank of theta = 20 t + 3 t^2, which a spline has exactly, as a logger writes it, to 360 degrees."""
+    t = np.linspace(0.0, 1.0, 120)
+    theta, omega = 20.0 * t + 3.0 * t * t, 20.0 + 6.0 * t
+    free = {"alpha": 6.0, "branch": 1, **MACHINE}
+    motion = [{"theta": a, "omega": w} for a, w in zip(theta, omega, strict=True)]
+    data = {"theta [deg]": np.degrees(theta) % 360.0, "t [ms]": 1e3 * t}
+    over = {"ec": 0.0, "AB": 0.1, "BC": 0.4}
+    for q in ("V_C", "a_C", "Y"):
+        measured = np.array([float(truth(q, **point, **free)) for point in motion])
+        result = dx.fit({**data, q: measured}, over={n: over[n] for n in ("ec", "AB")}, BC=MACHINE["BC"])
+        assert result["value"] == pytest.approx({n: MACHINE[n] for n in ("ec", "AB")}, rel=1e-7), q
+    again = dx.fit({**data, "Y": measured}, over=over, omega0=3.0)  # of which Y needs neither
+    assert again["value"] == pytest.approx(MACHINE, rel=1e-9)
+    with pytest.raises(TypeError, match="leave omega0 out of over"):
+        dx.fit({**data, "Y": measured}, over={"omega0": 20.0}, **MACHINE)
+    data["t [ms]"][5] = data["t [ms]"][4]
+    with pytest.raises(ValueError, match=r"data: t: .* times that increase"):
+        dx.fit({**data, "a_C": measured}, over=over)
 
 
 def test_the_jacobian_against_differences_of_the_truth():
@@ -255,8 +288,24 @@ def test_converged_only_where_the_gradient_is_small():
     result = dx.fit(data, over={"AB": 0.04, "BC": 0.06}, ec=0.0, nuisance="Y_bias")
     assert (result["status"], result["at_bound"]) == (1, {})
     assert "not converged" in result.report()
+    assert re.search(r"ran into a change point: .* at theta = (1\.5|4\.7)", result["message"])
     bounded = dx.fit(data, over={"AB": 0.04, "BC": (0.06, 0.09)}, ec=0.0, nuisance="Y_bias")
     assert (bounded["status"], bounded["at_bound"]) == (0, {"BC": "low"})
+
+
+def test_nuisances_take_starts_and_ranges():
+    """Of Y from the loop closure: an offset near half a turn, and a bias that a range keeps from its best."""
+    Y = 0.04 * np.cos(THETA + 2.9) + np.sqrt(0.13**2 - (0.01 + 0.04 * np.sin(THETA + 2.9)) ** 2)
+    lengths = {"AB": 0.05, "BC": 0.12, "ec": 0.0}
+    free = dx.fit({"theta": THETA, "Y": Y}, over=lengths, nuisance={"theta_offset": "166 deg", "Y_bias": 0.1})
+    assert free["value"]["theta_offset"] == pytest.approx(2.9, abs=1e-9)
+    machine = dx.Machine(units="mm, deg", **{name: 1e3 * value for name, value in lengths.items()})
+    ranges = {"theta_offset": (120, 200), "Y_bias": (1, 5)}
+    held = machine.fit({"theta": np.degrees(THETA), "Y": 1e3 * Y}, over=[*lengths], nuisance=ranges)
+    assert held["at_bound"] == {"Y_bias": "low"} or abs(held["value"]["Y_bias"] - 1.0) < 1e-3
+    for wrong in ({"Y_bias": (2.0, 1.0)}, {"theta_offset": math.inf}):
+        with pytest.raises(ValueError, match=next(iter(wrong))):
+            dx.fit({"theta": THETA, "Y": Y}, over=lengths, nuisance=wrong)
 
 
 SCENE = """outputs = ["T_in"]

@@ -22,11 +22,15 @@ COURSE = {"theta": "rad", "t": "s"}  # what samples are taken over, and its unit
 
 
 class Data(NamedTuple):
-    """Samples: `course` is "theta" or "t", `at` its values, `measured` a column for each quantity."""
+    """Samples: `course` is "theta" or "t", `at` its values, `measured` a column for each quantity.
+
+    t  the time at each sample, where it was measured beside theta
+    """
 
     course: str
     at: Array
     measured: dict[str, Array]
+    t: Array | None = None
 
     @property
     def size(self) -> int:
@@ -41,15 +45,15 @@ def read_data(data: Any, state: bool) -> Data:
     if len(set(names)) < len(names):
         raise TypeError(f"fit: data has one column of each name, got {', '.join(names)}")
     course = [name for name in COURSE if name in names]
-    if len(course) != 1:
+    if not course:
         raise TypeError(f"fit: data has one of theta and t, got {', '.join(names) or 'nothing'}")
     units = {name: COURSE.get(name) or quantity(name, state).unit for name in names}
     measured = {
         heading.name: _column(heading, column, units[heading.name]) for heading, column in columns.items()
     }
     at = measured.pop(course[0])
-    if not measured:
-        raise TypeError(f"fit: data has {course[0]} and no measured quantity")
+    if not measured.keys() - COURSE.keys():
+        raise TypeError(f"fit: data has {' and '.join(course)} and no measured quantity")
     for name, column in measured.items():
         if column.shape != at.shape:
             raise ValueError(f"data: {name} has {column.size} samples, {course[0]} has {at.size}")
@@ -57,7 +61,8 @@ def read_data(data: Any, state: bool) -> Data:
     for name, column in measured.items():
         if not np.isfinite(column).any():
             raise ValueError(f"data: {name} has no finite sample")
-    return Data(course[0], np.where(np.isfinite(at), at, 0.0), measured)
+    t = measured.pop("t", None)
+    return Data(course[0], np.where(np.isfinite(at), at, 0.0), measured, t)
 
 
 def columns_of(data: Any, units: UnitSystem = SI) -> dict[Heading, Any]:

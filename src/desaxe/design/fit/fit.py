@@ -8,10 +8,12 @@ import numpy as np
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS, TINY, Input
 from ...mechanism.keywords import with_known_keywords
+from ...mechanism.messages import named
 from ...mechanism.read import read, read_array
 from ...mechanism.spelling import did_you_mean
-from ...runtime.request import check_common
+from ...runtime.request import check_common, request
 from ...support.checks import whole_number
+from ...support.extras import needed
 from ...support.forks import IMPORTS
 from ...support.shown import shown
 from .data import MOST, Array, Data, read_data
@@ -26,6 +28,7 @@ MAD = 1.4826  # standard deviations in a median absolute deviation, of the norma
 UNLIKELY = 1e-6  # a chi-square that chance exceeds less often is told
 EDGE = 1e-9  # of an unknown's size: a bound that is met
 SMALL = 1e-3  # standard errors, Bates and Watts' bound: a smaller Gauss-Newton step is convergence
+CLOSE = 1e-6  # of the rod: a margin of assembling that is none
 ROUNDING = 16.0 * np.finfo(float).eps  # of the values of the model
 
 
@@ -34,7 +37,7 @@ def fit(
     data: Any,
     over: Mapping[str, Any],
     sigma: Mapping[str, Any] | None = None,
-    nuisance: Sequence[str] = (),
+    nuisance: Sequence[str] | Mapping[str, Any] = (),
     loss: str = "linear",
     *,
     branch: int = 1,
@@ -46,13 +49,16 @@ def fit(
     data      mapping of `theta` [rad] or `t` [s] and of measured quantities (`Y`, `a_C`, `T_in`, ...) to
               samples, NaN where one is missing; or a DataFrame, a Dataset, or the path of a CSV file whose
               heading names them: `theta [deg], a_C [m/s2]`. Without omega and omega0 in over and fixed a
-              column `omega` beside `theta` is the speed at each sample, an input
+              column `omega` beside `theta` is the speed at each sample, an input; so is the speed from a
+              column `t` beside `theta`, and alpha where it is not in over and fixed: those of the cubic
+              spline through the angles, which are at most half a turn apart. With a fixed speed t is not used
     over      dict parameter -> start, or (low, high): bounds, in which several starts are tried; of a machine
               also names alone, which start at its numbers
     sigma     dict quantity -> standard deviation of its samples, in the quantity's unit. Without it one
               quantity only may be measured, and the scatter of its residuals takes sigma's place
     nuisance  further unknowns: "theta_offset" [rad] (the crank is at theta + theta_offset), and of each
-              quantity "a_C_bias", "a_C_scale": measured = scale * a_C + bias
+              quantity "a_C_bias", "a_C_scale": measured = scale * a_C + bias. Names, or a dict name -> start
+              or (low, high)
     loss      "linear" (least squares), or "soft_l1", "huber", "cauchy", "arctan", robust to outliers
     fixed     all other inputs, as for `evaluate`
 
@@ -74,10 +80,11 @@ def fit(
                        errors; 1 not converged, 2 a combination left open; `message` says too where residuals
                        are far beyond sigma
 
-    SciPy's trust region reflective least squares with the exact Jacobian; biases and scales need no
-    start: they are solved for at each. A step to a design that cannot be assembled at
-    every sample is shortened. Raises ValueError for data that are empty or fewer than the
-    unknowns, and where no start can be assembled; TypeError for a missing input. Needs the extra `design`.
+    SciPy's trust region reflective least squares with the exact Jacobian; biases and scales need no start:
+    they are solved for at each. A step to a design that cannot be assembled at every sample is shortened,
+    and a search that ends there says that it ran into a change point. Raises ValueError for data that are
+    empty or fewer than the unknowns, and where no start can be assembled; TypeError for a missing input.
+    Needs the extra `design`.
 
     See docs/choose.md: which call for which question.
     """
@@ -91,12 +98,12 @@ def fit(
     read = read_data(data, "omega0" not in state)
     for name, value in fixed.items():
         array = read_array(INPUTS[name], value) if isinstance(value, (list, tuple)) else value
-        if np.ndim(array) and np.size(array) not in (1, read.size) and not callable(value):
+        if np.ndim(array) and np.size(array) not in (1, read.at.size) and not callable(value):
             raise ValueError(
                 f"{name}: {np.size(array)} values, and a fit is of one machine: give one, or a range in over"
             )
-    if read.course == "theta" and "omega" in read.measured and not {"omega", "omega0"} & state.keys():
-        read, fixed = _with_speeds(read, fixed)
+    if read.course == "theta":
+        read, fixed = _with_speeds(read, over, fixed, branch)
     unknowns = unknowns_of(over, nuisance, read, fixed)
     if read.size < len(unknowns):
         raise ValueError(
@@ -109,13 +116,46 @@ def fit(
     return _result(model, result, loss, absolute=bool(given))
 
 
-def _with_speeds(data: Data, fixed: Mapping[str, Any]) -> tuple[Data, dict[str, Any]]:
-    """The data without the measured speed of the crank, which is an input; without it a sample is missing."""
+def _with_speeds(
+    data: Data, over: Mapping[str, Any], fixed: dict[str, Any], branch: int
+) -> tuple[Data, dict[str, Any]]:
+    """The data and the inputs with the speed at each sample, where it was measured and is needed.
+
+    A quantity that depends on the speed is missing where that is.
+    """
+    inputs = {name: value for name, value in fixed.items() if value is not None} | dict.fromkeys(over, 1.0)
+    speeds = {"omega", "omega0"} & inputs.keys()
+    if data.t is not None and speeds & over.keys():
+        (name,) = speeds
+        raise TypeError(
+            f"fit: theta and t in data have the speed: leave {name} out of over, or theta out of data"
+        )
     columns = dict(data.measured)
-    omega = columns.pop("omega")
-    known = np.isfinite(omega)
-    measured = {name: np.where(known, column, np.nan) for name, column in columns.items()}
-    return data._replace(measured=measured), {**fixed, "omega": np.where(known, omega, 0.0)}
+    if speeds or (data.t is None and "omega" not in columns):
+        return data, fixed
+    omega = columns.pop("omega", None)
+    needs = {q: request((q,), {**inputs, "omega": 1.0}, branch, "standard").inputs for q in columns}
+    moving = [q for q, names in needs.items() if "omega" in names]
+    motion = _motion(data.at, data.t) if data.t is not None and moving else {}
+    motion = {name: one for name, one in motion.items() if name not in inputs}
+    motion |= {"omega": omega} if omega is not None else {}
+    known = np.isfinite(sum(motion.values(), np.zeros_like(data.at)))
+    columns |= {q: np.where(known, columns[q], np.nan) for q in moving}
+    motion = {name: np.where(known, one, 0.0) for name, one in motion.items()}
+    return data._replace(measured=columns), {**fixed, **motion}
+
+
+def _motion(theta: Array, t: Array) -> dict[str, Array]:
+    """The speed and the acceleration of the crank at angles measured at times; NaN without a time."""
+    with needed("fit", "design"):
+        from scipy.interpolate import CubicSpline
+    known = np.isfinite(t)
+    late = np.flatnonzero(np.diff(t[known]) <= 0.0)
+    if late.size or known.sum() < 2:
+        why = f"{t[known][late[0] + 1]:g} after {t[known][late[0]]:g}" if late.size else "one time"
+        raise ValueError(f"data: t: {why}: the speed needs times that increase from sample to sample")
+    spline = CubicSpline(t[known], np.unwrap(theta[known]))
+    return {name: np.where(known, spline(t, k), np.nan) for k, name in enumerate(("omega", "alpha"), 1)}
 
 
 def _sigmas(sigma: Mapping[str, Any] | None, data: Data) -> dict[str, float]:
@@ -179,6 +219,7 @@ def _result(model: FittedModel, result: FitSolution, loss: str, absolute: bool) 
     values, slopes = model.quantities(result.x)
     converged = _has_converged(model, result.x, residuals, jacobian, loss)
     status = STOPPED if not converged else OPEN if spread.unidentified else DONE
+    where = "" if converged else _change_point(model, result.x)
     total = float(residuals @ residuals) if absolute else np.nan
     by_name = dict(zip(model.names, result.x.tolist(), strict=True))
     return Fit(
@@ -199,7 +240,7 @@ def _result(model: FittedModel, result: FitSolution, loss: str, absolute: bool) 
             "evaluations": result.evaluations,
             "chi_square": total / freedom if freedom else np.nan,
             "status": status,
-            "message": WORDS[status] + (_far_beyond(residuals, freedom, loss) if absolute else ""),
+            "message": WORDS[status] + where + (_far_beyond(residuals, freedom, loss) if absolute else ""),
         },
         model,
     )
@@ -217,6 +258,18 @@ def _has_converged(model: FittedModel, x: Array, residuals: Array, jacobian: Arr
     way = np.where(rest @ rows > 0.0, x - low, high - x)  # to the bound that the gradient leads to
     free = way * sizes > SMALL * max(least, float(np.linalg.norm(rest)) / np.sqrt(rest.size))
     return offset_of(rows[:, free], rest, least) <= SMALL
+
+
+def _change_point(model: FittedModel, x: Array) -> str:
+    """Words where the search ended at a design that can just be assembled at a sample."""
+    inputs = {**model.fixed, **dict(zip(model.names, x.tolist(), strict=True))}
+    theta, _ = model.theta(x)
+    spare = inputs["BC"] - np.abs(inputs["ec"] + inputs["AB"] * np.sin(theta))
+    k = int(np.argmin(spare))
+    if not spare[k] <= CLOSE * inputs["BC"]:
+        return ""
+    where = named("theta", float(theta[k]), "g")
+    return "; the search ran into a change point: the mechanism can just be assembled at " + where
 
 
 def _far_beyond(residuals: Array, freedom: int, loss: str) -> str:

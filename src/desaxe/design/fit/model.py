@@ -40,6 +40,7 @@ class FittedModel:
         self.fixed = {name: value for name, value in fixed.items() if value is not None}
         self.sigma = dict(sigma)
         self.parameters = [u.name for u in unknowns if u.name in _inputs(self.names)]
+        self.sampled = [name for name, value in self.fixed.items() if np.size(value) > 1]
         self.state = "omega" in self.fixed or "omega" in self.parameters
         self.slopes = {q: self._slope_names(q) for q in data.measured}
 
@@ -83,13 +84,16 @@ class FittedModel:
         return offset + speed * at + 0.5 * alpha * at * at, by
 
     def quantities(
-        self, x: Array, at: Array | None = None
+        self, x: Array, at: Array | None = None, sampled: Mapping[str, Array] | None = None
     ) -> tuple[dict[str, Array], dict[str, dict[str, Array]]]:
-        """Each quantity at each sample, and its derivatives by the unknowns; NaN where infeasible."""
+        """Each quantity at each sample, and its derivatives by the unknowns; NaN where infeasible.
+
+        at, sampled  other samples, and the inputs there that vary with them
+        """
         value = dict(zip(self.names, x.tolist(), strict=True))
         theta, moves = self.theta(x, at)
         asked = list(dict.fromkeys([*self.slopes, *(n for s in self.slopes.values() for n in s.values())]))
-        inputs = {**self.fixed, **{p: value[p] for p in self.parameters}}
+        inputs = {**self.fixed, **{p: value[p] for p in self.parameters}, **(sampled or {})}
         result = evaluate(asked, theta=theta, branch=self.branch, **inputs)
         result = {name: np.broadcast_to(array, theta.shape) for name, array in result.items()}
         values, slopes = {}, {}

@@ -44,19 +44,29 @@ class Fit(Answer):
         shown: Fit = in_units(Fit(self._found, self._model), self._system)
         return shown
 
-    def predict(self, theta: Any = None, t: Any = None) -> dict[str, tuple[Any, Any]]:
+    def predict(self, theta: Any = None, t: Any = None, **inputs: Any) -> dict[str, tuple[Any, Any]]:
         """Each quantity as (value, standard error of the fitted curve) at crank angles [rad] or times [s].
 
-        Angles, times and values are in the units of this result.
+        inputs  those that varied from sample to sample, such as a measured omega, at these angles
+
+        Angles, times, inputs and values are in the units of this result.
         The band of a further measurement is wider: add its sigma squared to the square of the standard error.
         """
         course = self._model.data.course
         at = {"theta": theta, "t": t}[course]
         if at is None:
             raise TypeError(f"predict: this fit is over {course}: give {course}=")
-        at = np.atleast_1d(np.asarray(self._system.of(course).to_si(np.asarray(at, float))))
+        if inputs.keys() != {*self._model.sampled}:
+            names = ", ".join(f"{name}=" for name in self._model.sampled)
+            missing = (
+                f"{names} varied with the samples: give them at these angles" if names else "no other input"
+            )
+            raise TypeError(f"predict: {missing}, got {', '.join(inputs) or 'none'}")
+        columns = {name: self._in_si(name, value) for name, value in {course: at, **inputs}.items()}
+        at, *rest = np.broadcast_arrays(*columns.values())
+        sampled = dict(zip(inputs, rest, strict=True))
         x = np.array([self._found["value"][name] for name in self["names"]])
-        values, slopes = self._model.quantities(x, at)
+        values, slopes = self._model.quantities(x, at, sampled)
         result = {}
         for q, value in values.items():
             rows = np.array(
@@ -66,6 +76,9 @@ class Fit(Answer):
             own = self._system.of(q)
             result[q] = own.shown(value), own.shown(np.sqrt(variance))
         return result
+
+    def _in_si(self, name: str, value: Any) -> Any:
+        return np.atleast_1d(np.asarray(self._system.of(name).to_si(np.asarray(value, float))))
 
     def report(self) -> str:
         """A table of the unknowns with standard errors and intervals, as text."""
@@ -96,6 +109,8 @@ class Fit(Answer):
     def plot(self, figure: Any = None) -> Any:
         """Measurements, the fitted curve with its 95 % band, and the residuals.
 
+        Where inputs varied with the samples, the fitted values at these in place of curve and band.
+
         Returns a Picture of the fitted curves by quantity. `figure` is a matplotlib Figure to draw in, by
         default a new one.
         """
@@ -108,16 +123,17 @@ class Fit(Answer):
         axes = figure.subplots(len(data.measured), 2, squeeze=False, sharex=True, width_ratios=(2, 1))
         along = self._system.of(data.course)
         at = along.shown(data.at)
-        fine = np.linspace(at.min(), at.max(), 721)
+        varied = {q: self._system.of(q).shown(self._model.fixed[q]) for q in self._model.sampled}
+        fine, style = (at, "x") if varied else (np.linspace(at.min(), at.max(), 721), "-")
         curves: dict[str, Any] = {}
-        bands = self.predict(**{data.course: fine})
+        bands = self.predict(**{data.course: fine}, **varied)
         for (left, right), (q, column) in zip(axes, data.measured.items(), strict=True):
             (value, error), own = bands[q], self._system.of(q)
             left.plot(at, own.shown(column), ".", ms=3, color="0.45", label="measured")
-            (curves[q],) = left.plot(fine, value, color="tab:blue", label="fitted")
-            left.fill_between(
-                fine, value - 1.96 * error, value + 1.96 * error, color="tab:blue", alpha=0.3, lw=0
-            )
+            (curves[q],) = left.plot(fine, value, style, ms=3, color="tab:blue", label="fitted")
+            if not varied:
+                ends = value - 1.96 * error, value + 1.96 * error
+                left.fill_between(fine, *ends, color="tab:blue", alpha=0.3, lw=0)
             unit = own.unit if self.system else quantity(q, self._model.state).unit
             left.set_ylabel(f"{q} [{unit}]")
             right.plot(at, self["residuals"][q], ".", ms=3, color="0.45")

@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...mechanism.inputs import INPUTS, LEAST
+from ...mechanism.catalogue import quantity
+from ...mechanism.inputs import INPUTS, LEAST, Input
 from ...mechanism.messages import named
 from ...mechanism.read import read
 from ...mechanism.spelling import did_you_mean
@@ -33,19 +34,20 @@ class Unknown(NamedTuple):
 
 
 def unknowns_of(
-    over: Mapping[str, Any], nuisance: Sequence[str], data: Data, fixed: Mapping[str, Any]
+    over: Mapping[str, Any], nuisance: Sequence[str] | Mapping[str, Any], data: Data, fixed: Mapping[str, Any]
 ) -> list[Unknown]:
     """The unknowns, checked: parameters first, then nuisances."""
     if not isinstance(over, Mapping) or not over:
         raise TypeError("over: expected a dict parameter -> start or (low, high), such as {'AB': 0.1}")
     try:
-        nuisance = (nuisance,) if isinstance(nuisance, str) else tuple(dict.fromkeys(nuisance))
+        names = (nuisance,) if isinstance(nuisance, str) else nuisance
+        starts = {**names} if isinstance(names, Mapping) else dict.fromkeys(names)
     except TypeError:
-        raise TypeError(f"nuisance = {shown(nuisance)}: expected a list of names") from None
+        raise TypeError(f"nuisance = {shown(nuisance)}: expected names, or a dict name -> start") from None
     result = [_parameter(name, value, fixed) for name, value in over.items()]
     longest = max((u.scale for u in result if INPUTS[u.name].unit == "m"), default=1.0)
     result = [u._replace(scale=longest) if u.name == "ec" else u for u in result]
-    return [*result, *(_nuisance(name, data) for name in nuisance)]
+    return [*result, *(_nuisance(name, value, data) for name, value in starts.items())]
 
 
 def _parameter(name: str, value: Any, fixed: Mapping[str, Any]) -> Unknown:
@@ -80,19 +82,29 @@ def _require_moderate(name: str, value: Any, size: float) -> None:
         raise ValueError("over: " + named(name, value) + f": {limit}")
 
 
-def _nuisance(name: str, data: Data) -> Unknown:
+def _nuisance(name: str, value: Any, data: Data) -> Unknown:
+    """A further unknown; a bias or a scale with a range is searched for as any other."""
     if not isinstance(name, str):
         raise TypeError(f"nuisance: {shown(name)}: a name is wanted")
-    if name == OFFSET:
-        return Unknown(name, 0.0, -inf, inf, 1.0)
-    for kind in ("bias", "scale"):
-        of = name.removesuffix(f"_{kind}")
-        if of != name and of in data.measured:
-            size = float(np.nanstd(data.measured[of])) or 1.0
-            start, scale = (0.0, size) if kind == "bias" else (1.0, 1.0)
-            return Unknown(name, start, -inf, inf, scale, linear=True)
-    known = [OFFSET, *(f"{q}_{kind}" for q in data.measured for kind in ("bias", "scale"))]
-    raise ValueError(f"nuisance: {name!r}; {did_you_mean(str(name), known)}there are {', '.join(known)}")
+    kinds = {OFFSET: Unknown(name, 0.0, -inf, inf, 1.0)}
+    units = {OFFSET: "rad"}
+    for of, column in data.measured.items():
+        size = float(np.nanstd(column)) or 1.0
+        kinds[f"{of}_bias"] = Unknown(name, 0.0, -inf, inf, size, linear=True)
+        kinds[f"{of}_scale"] = Unknown(name, 1.0, -inf, inf, 1.0, linear=True)
+        units |= {f"{of}_bias": quantity(of).unit, f"{of}_scale": "1"}
+    if name not in kinds:
+        meant = did_you_mean(name, kinds)
+        raise ValueError(f"nuisance: {name!r}; {meant}there are {', '.join(kinds)}")
+    result, row = kinds[name], Input(name, units[name], "")
+    if value is None:
+        return result
+    if not (isinstance(value, (tuple, list)) and len(value) == 2):
+        return result._replace(start=read(row, value, "nuisance", "a start or (low, high)"))
+    low, high = [read(row, end, "nuisance", "a start or (low, high)") for end in value]
+    if not low < high:
+        raise ValueError("nuisance: " + named(name, value) + ": low must be below high")
+    return Unknown(name, 0.5 * (low + high), low, high, result.scale, ranged=True)
 
 
 def starts_of(unknowns: Sequence[Unknown], count: int, seed: int) -> np.ndarray[Any, Any]:
@@ -108,6 +120,6 @@ def starts_of(unknowns: Sequence[Unknown], count: int, seed: int) -> np.ndarray[
     drawn = sequence.random(1 << (count - 1).bit_length())[: count - 1]
     points = np.tile(first, (count, 1))
     for column, k in enumerate(free):
-        low, high = (-pi, pi) if unknowns[k].name == OFFSET else (unknowns[k].low, unknowns[k].high)
+        low, high = (unknowns[k].low, unknowns[k].high) if unknowns[k].ranged else (-pi, pi)
         points[1:, k] = low + (high - low) * drawn[:, column]
     return points
