@@ -12,7 +12,7 @@ equation     one quantity as a SymPy expression and LaTeX
 rod          the rod's functions, followed along the crank
 geometry     partial derivatives of phi and Y of any order
 folded       derivatives of Y where crank and rod fold back onto each other
-start        derivatives by alpha near theta = 0
+start        derivatives with respect to alpha near theta = 0
 dynamics     forces, torque and energies, in lumped masses
 bodies       the three free bodies, solved by SymPy: the proof of `dynamics`
 polynomials  polynomials for sine and cosine, pi/2 in parts

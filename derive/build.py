@@ -138,7 +138,8 @@ def _define_constant(sheet: Sheet, name: str, base: str, value: sp.Expr) -> None
     if unit is None:
         raise ValueError(f"{base} has no unit")
     by = parts(name)[1]
-    what = f"derivative of {base} by {', '.join(by)}" if value else f"0: {base} does not depend on it"
+    named = f"derivative of {base} with respect to {', '.join(by)}"
+    what = named if value else f"0: {base} does not depend on it"
     sheet.define(name, value, per(unit, *by), what)
 
 

@@ -32,7 +32,7 @@ def whole_design() -> Program:
     notes = dict(program.notes)
     for name, length in product(WHOLE, LENGTHS):
         unit = unit_text(per(coherent_unit(notes[name].unit), length))
-        notes[sensitivity(name, length)] = Note(unit, f"derivative of {name} by {length}")
+        notes[sensitivity(name, length)] = Note(unit, f"derivative of {name} with respect to {length}")
     return program._replace(notes=notes)
 
 
@@ -142,7 +142,7 @@ class _Sector:
         return name
 
     def slope(self, expression: sp.Expr, p: sp.Symbol) -> sp.Expr:
-        """The derivative by a length."""
+        """The derivative with respect to a length."""
         total = expression.diff(p)
         for root, square in self.roots.items():
             total += expression.diff(root) * square.diff(p) / (2 * root)

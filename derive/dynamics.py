@@ -67,7 +67,8 @@ def resolve_ratio(sheet: Sheet, name: str) -> Equation | None:
     if base == "inv_S":
         expression = -sec_phi * inv_S**2 if parameters == ("BC",) else inv_S * tan_phi * by_phi
     unit = Unit(m=-1) if base == "inv_S" else NONE
-    return Equation(expression, per(unit, *parameters), f"derivative of {base} by {parameters[0]}")
+    meaning = f"derivative of {base} with respect to {parameters[0]}"
+    return Equation(expression, per(unit, *parameters), meaning)
 
 
 def centres_sheet() -> Sheet:
@@ -76,7 +77,7 @@ def centres_sheet() -> Sheet:
     for centre, length in zip(CENTRES, (AB, BC), strict=True):
         sheet.define(centre, length / 2, LENGTH, f"half of {length}")
         by_length = sensitivity(centre, str(length))
-        sheet.define(by_length, sp.Rational(1, 2), NONE, f"derivative of {centre} by {length}")
+        sheet.define(by_length, sp.Rational(1, 2), NONE, f"derivative of {centre} with respect to {length}")
     return sheet
 
 
@@ -94,7 +95,7 @@ def define_dynamics(sheet: Sheet) -> None:
 def _define_lumps(sheet: Sheet) -> None:
     """Lumped masses; a centre of mass that is an input does not move with its link's length."""
     for centre, length in zip(CENTRES, ("AB", "BC"), strict=True):
-        meaning = f"derivative of {centre} by {length}"
+        meaning = f"derivative of {centre} with respect to {length}"
         sheet.define(sensitivity(centre, length), 0, NONE, meaning)
     _define_share(sheet, "m_crank_at_B", m_crank, r_crank, AB, "the crank's mass as if at B", "B (35)")
     _define_share(sheet, "m_at_C", m_rod, r_rod, BC, "the rod's mass at C", "B (33)")
@@ -119,12 +120,15 @@ def _define_lumps(sheet: Sheet) -> None:
 def _define_share(
     sheet: Sheet, name: str, mass: sp.Symbol, centre: sp.Symbol, length: sp.Symbol, meaning: str, source: str
 ) -> None:
-    """mass centre/length, whose derivative by the length is exactly 0 where the centre moves with it."""
+    """mass centre/length, whose derivative is exactly 0 where the centre moves with the length."""
     sheet.define(name, mass * (centre / length), MASS, meaning, source)
     moved = symbol(sensitivity(centre.name, length.name)) * length - centre
     by_length = sensitivity(name, length.name)
     sheet.define(
-        by_length, mass * moved / length**2, per(MASS, length.name), f"derivative of {name} by {length}"
+        by_length,
+        mass * moved / length**2,
+        per(MASS, length.name),
+        f"derivative of {name} with respect to {length}",
     )
 
 

@@ -1,4 +1,4 @@
-"""The slider's position and its derivatives by theta, where crank and rod fold back onto each other.
+"""The slider's position and its derivatives where crank and rod fold back onto each other.
 
 Where they are nearly of one length and the eccentricity is small, Y = AB cos(theta) + branch S is a small
 difference of large terms on the way back, and so are its derivatives. From the stable variables,

@@ -37,7 +37,8 @@ def resolve_geometry(sheet: Sheet, name: str) -> Equation | None:
         expression = sp.factor_terms(expression)
         if base == "Y" and not lengths:
             expression = slider_rate(turns, expression)
-    return Equation(expression, per(unit, *parameters), f"derivative of {base} by {', '.join(parameters)}")
+    meaning = f"derivative of {base} with respect to {', '.join(parameters)}"
+    return Equation(expression, per(unit, *parameters), meaning)
 
 
 def _rod_functions(expression: sp.Expr) -> list[tuple[sp.Symbol, RodFunction]]:
@@ -47,7 +48,7 @@ def _rod_functions(expression: sp.Expr) -> list[tuple[sp.Symbol, RodFunction]]:
 
 
 def _by_length(expression: sp.Expr, name: str) -> sp.Expr:
-    """The derivative by a length, through u and BC where the rod's functions depend on it."""
+    """The derivative with respect to a length, through u and BC where the rod's functions depend on it."""
     length = LENGTHS[name]
     result = expression.diff(length)
     for s, rod in _rod_functions(expression):
@@ -58,7 +59,7 @@ def _by_length(expression: sp.Expr, name: str) -> sp.Expr:
 
 
 def _by_theta(expression: sp.Expr) -> sp.Expr:
-    """The derivative by theta at fixed lengths."""
+    """The derivative with respect to theta at fixed lengths."""
     result = in_theta(expression)
     for s, rod in _rod_functions(expression):
         result += expression.diff(s) * rod._replace(turns=rod.turns + 1).symbol

@@ -91,12 +91,12 @@ def define_speed_by_alpha(sheet: Sheet, name: str, by_theta: sp.Symbol) -> None:
     plain, unit = sheet.chain_rule(name, "alpha"), sheet.equations[name].unit
     assert unit is not None
     per_turn = sheet.define(f"{name}_per_theta", by_theta * symbol("inv_omega"))
-    meaning = f"derivative of {name} by alpha"
+    meaning = f"derivative of {name} with respect to alpha"
     sheet.define(f"{name}_wrt_alpha", per_turn * theta, per(unit, "alpha"), meaning, differentiate=plain)
 
 
 def _define_rate(sheet: Sheet, name: str, parameters: tuple[str, ...], value: sp.Expr | int) -> None:
-    meaning = f"derivative of {name} by {', '.join(parameters)}"
+    meaning = f"derivative of {name} with respect to {', '.join(parameters)}"
     sheet.define(sensitivity(name, *parameters), value, per(UNITS[name], *parameters), meaning)
 
 
@@ -127,7 +127,7 @@ def _define_turning(sheet: Sheet, speed: sp.Symbol) -> None:
 def state_sheet() -> Sheet:
     """The equations of a given state (omega, alpha), which replace those of the law.
 
-    omega stands in the place of omega0: a derivative by it carries omega0's name.
+    omega stands in the place of omega0: a derivative with respect to it carries omega0's name.
     """
     sheet = Sheet(())
     sheet.define("omega2", omega**2, UNITS["omega2"], "square of the crank's speed")

@@ -2,7 +2,7 @@
 
 The rod is a bar of length BC whose ends are u = ec + AB sin(theta) apart across the slider axis and
 S along it; phi(u, BC) and S(u, BC) are all that the mechanism needs of it. `S_u_BC_2` is the second
-derivative by theta of d2S/(du dBC). Lengths come first, where every derivative is one term in
+derivative with respect to theta of d2S/(du dBC). Lengths come first, where every derivative is one term in
 u/S and BC/S; theta comes last, by the chain rule on du/dtheta = S dphi/dtheta, so that only the
 recollected derivatives of phi by theta enter and nothing cancels.
 """
@@ -35,7 +35,7 @@ class RodFunction(NamedTuple):
         return symbol("_".join([self.function, *self.by, *([str(self.turns)] if self.turns else [])]))
 
     def with_respect_to(self, parameter: str) -> "RodFunction":
-        """The derivative by u or BC."""
+        """The derivative with respect to u or BC."""
         return self._replace(by=tuple(sorted((*self.by, parameter), reverse=True)))
 
     @property
@@ -101,7 +101,7 @@ def _height(turns: int) -> sp.Expr:
 
 
 def _partial(function: str, by: tuple[str, ...]) -> sp.Expr:
-    """A partial derivative by u and BC, in u, BC and 1/S."""
+    """A partial derivative with respect to u and BC, in u, BC and 1/S."""
     expression = rod_partials()[function, BY[by[0]]]
     for name in by[1:]:
         parameter = BY[name]

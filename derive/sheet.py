@@ -91,7 +91,8 @@ class Sheet:
             if expression.is_number:
                 return expression
             unit = per(equation.unit, parameter) if equation.unit is not None else None
-            self.equations[new] = Equation(expression, unit, f"derivative of {name} by {parameter}")
+            meaning = f"derivative of {name} with respect to {parameter}"
+            self.equations[new] = Equation(expression, unit, meaning)
         return symbol(new)
 
     def chain_rule(self, name: str, parameter: str) -> sp.Expr:

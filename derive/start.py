@@ -84,4 +84,4 @@ def define_start(sheet: Sheet) -> None:
         plain, unit = sheet.chain_rule(name, "alpha"), sheet.equations[name].unit
         assert unit is not None
         sheet.define(f"{name}_wrt_alpha", select(near_start, start, plain), per(unit, "alpha"),
-                     f"derivative of {name} by alpha", differentiate=plain)  # fmt: skip
+                     f"derivative of {name} with respect to alpha", differentiate=plain)  # fmt: skip

@@ -91,12 +91,12 @@ stands for one point that is feasible. A line says: unit | meaning | paper equat
 
 _STATE = """What a given state (omega, alpha) puts in place of the law's lines of the same names.
 
-A derivative by omega carries the name of omega0's, in whose place omega stands."""
+A derivative with respect to omega carries the name of omega0's, in whose place omega stands."""
 
 
 _CENTRES = """What centres of mass halfway along their links put in place of inputs and lines.
 
-A derivative by a length then includes that of the centre."""
+A derivative with respect to a length then includes that of the centre."""
 
 
 def _banner(what: str, digest: str, size: str = "") -> str:

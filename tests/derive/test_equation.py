@@ -64,7 +64,7 @@ def test_text():
     assert r"\overline{BC}^{2}" in result.latex
     assert not re.search(r"[A-Z]{2}\^", result.latex)  # AB^2 would be the square of B alone
     assert dx.equation("a_C").source == "A (19)"
-    assert repr(result).startswith("V_C_wrt_ec [1/s], derivative of V_C by ec\nV_C_wrt_ec = ")
+    assert repr(result).startswith("V_C_wrt_ec [1/s], derivative of V_C with respect to ec\nV_C_wrt_ec = ")
 
 
 def test_unknown():

@@ -92,7 +92,7 @@ def test_a_derivative_has_its_unit_and_meaning():
     sheet = toy()
     sheet.derivative("a", "theta")
     made = sheet.equations["a_wrt_theta"]
-    assert (made.unit, made.meaning) == (Unit(1, 0, -1), "derivative of a by theta")
+    assert (made.unit, made.meaning) == (Unit(1, 0, -1), "derivative of a with respect to theta")
 
 
 def test_a_resolver_makes_what_is_asked_for():

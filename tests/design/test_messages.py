@@ -124,7 +124,7 @@ TABLE = [  # a call and what is good for it; what is changed, the error and its 
     ((dx.design_map, "strokes"), ROD, [({}, ValueError, "did you mean 'stroke'")]),
     ((dx.tolerance, "a_C"), SPREAD, [
         ({"ec": 0.1}, ValueError, "every input is exact"),
-        ({"ec": dx.plus_minus(0.1, -1e-3)}, ValueError, "ec = .*-0.001.*: a tolerance must be at least 0"),
+        ({"ec": dx.plus_minus(0.1, -1e-3)}, ValueError, "ec: a tolerance of -0.001 is below 0"),
         ({"ec": dx.plus_minus(0.1, math.inf)}, ValueError, "ec = .*inf.*: expected two finite numbers"),
         ({"ec": dx.plus_minus(0.1, [1])}, ValueError, "ec = .*expected two finite numbers"),
         ({"ec": "0.1 m +- x %"}, ValueError, "ec = 'x '"),
@@ -138,7 +138,7 @@ TABLE = [  # a call and what is good for it; what is changed, the error and its 
         ({"sigmas": NAN}, ValueError, "sigmas = nan"),
     ]),
     ((dx.tolerance, "T_in_wrt_ec"), {**SPREAD, "m_slider": 1.0}, [
-        ({}, ValueError, "T_in_wrt_ec: its derivative by ec is not derived"),
+        ({}, ValueError, "T_in_wrt_ec: its derivative with respect to ec is not derived"),
     ]),
     ((dx.tolerance, "stroke"), SPREAD, [({"omega0": None}, ValueError, "theta: stroke is of a whole turn")]),
     ((dx.tolerance, "a_D"), SPREAD, [({}, ValueError, "unknown quantity 'a_D'")]),

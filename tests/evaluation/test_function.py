@@ -161,7 +161,7 @@ def test_jacobian_is_the_derivatives():
     assert set(result["margin"]) == {"theta", "ec"}
     assert np.all(result["margin"]["theta"] == 0.0)
     assert np.all(result["margin"]["ec"] == -1.0)
-    with pytest.raises(ValueError, match="the derivative of status by theta is not derived"):
+    with pytest.raises(ValueError, match="the derivative of status with respect to theta is not derived"):
         dx.function("status", ec=0.0, **SIZES).jacobian(1.0)
 
 

@@ -313,7 +313,7 @@ def test_a_force_that_no_rod_carries_is_told(force):
         "over_Y": press.over_Y([30, 100], [-80e3, 0]),
         "over_theta": press.over_theta([0, 3], [10, -80e3], kind="step"),
     }
-    message = "almost surely a slip: F_Y up to 80000 kN on a rod of 64 mm: half as thick .* carry 78 GPa$"
+    message = "almost certainly a slip: F_Y up to 80000 kN on a rod of 64 mm: half as thick .* carry 78 GPa$"
     with pytest.warns(dx.UnitWarning, match=message) as caught:
         press.replace(F_Y=loads[force])
     assert caught[0].filename == __file__

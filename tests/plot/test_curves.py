@@ -278,7 +278,7 @@ def test_gaps_are_marked():
 def test_panels_of_derivatives_say_which():
     grid = dx.grid(["Y_wrt_theta", "Y_wrt_theta_theta"], theta=[0.0, 1.0, 2.0], ec=0.1, AB=0.125, BC=0.35)
     titles = [lines[0].axes.get_title(loc="left") for lines in dx.plot.panels(grid).values()]
-    assert titles == ["derivative of Y by theta", "derivative of Y by theta, theta"]
+    assert titles == ["derivative of Y with respect to theta", "derivative of Y with respect to theta, theta"]
 
 
 def test_a_title_does_not_break_inside_of_a_word():

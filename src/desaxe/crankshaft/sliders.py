@@ -165,7 +165,7 @@ def described(name: str) -> dict[str, Any]:
     if name == "status":
         return attributes(name)
     if by:
-        meaning = f"derivative of {base} by {', '.join(by)}"
+        meaning = f"derivative of {base} with respect to {', '.join(by)}"
     else:
         plain, index = indexed(base)
         meaning = MEANING.get(plain) or quantity(plain).meaning

@@ -203,7 +203,7 @@ class SliderSums:
         return {n: first[n] for n in LENGTHS if all(row[n] == first[n] for row in others)}
 
     def least_margin(self, side: float, inputs: Mapping[str, Any]) -> tuple[Any, dict[str, Any]]:
-        """The least BC - AB - side ec, with other inputs of the sliders, and its derivatives by lengths."""
+        """The least BC - AB - side ec, with other inputs of the sliders, and its derivatives."""
         here = self.replaced({n: v for n, v in inputs.items() if n not in (*STATE, "sliders")})
         lengths = ([member.inputs[n] for n in LENGTHS] for member in here.members)
         every = np.array(np.broadcast_arrays(*(margins_of(side * ec, *more)[0] for ec, *more in lengths)))
@@ -359,7 +359,7 @@ class SliderSums:
     def _by_input(
         self, q: str, share: Share, name: str, slopes: Mapping[str, Any]
     ) -> Iterator[tuple[str, Share]]:
-        """The derivative by an input of the slider or by the state of the shaft."""
+        """The derivative with respect to an input of the slider or by the state of the shaft."""
         if name not in ("omega0", "omega"):
             by = f"{q}_wrt_{name}" if name not in INPUTS else sensitivity(q, name)
             quantity(by, True)
@@ -373,7 +373,7 @@ class SliderSums:
             raise ValueError(f"{q}_wrt_{name}: the speed is missing")
 
     def _by_bank(self, k: int, q: str, share: Share) -> Iterator[tuple[str, Share]]:
-        """The derivative by a bank at one crank angle: it turns the axes of forces, and gravity."""
+        """The derivative with respect to a bank at one crank angle, which turns axes and gravity."""
         yield q, Share(0.0, share.sin, -1.0 * share.cos)
         inputs = self.inputs_of(k)
         for axis, other, side in (("g_X", "g_Y", -1.0), ("g_Y", "g_X", 1.0)):

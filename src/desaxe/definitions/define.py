@@ -32,7 +32,7 @@ DEEPEST = 50  # definitions that use one another
 
 
 def define(name: str, expression: str, unit: str | None = None, meaning: str = "", **constants: Any) -> str:
-    """Define a quantity: every later call, plot and file knows it, with its sensitivities.
+    """Define a quantity, known from then on to every call, plot and file, with its sensitivities.
 
         >>> import desaxe as dx
         >>> dx.define("shoe_power", "f * abs(N_C * V_C)", unit="W", meaning="power lost in the shoe", f=0.08)

@@ -66,7 +66,7 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
         name, meaning = _name(measure), _meaning(measure)
         rows = {name: (result.value, _about(measure), meaning)}
         for p, slope in result.gradient.items() if derivatives else ():
-            rows[f"{name}_wrt_{p}"] = slope, _about(measure, p), f"{meaning}, by {p}"
+            rows[f"{name}_wrt_{p}"] = slope, _about(measure, p), f"{meaning}, with respect to {p}"
         for row, (values, about, words) in rows.items():
             if row in variables and measure != "margin":
                 raise ValueError(f"design_map: two variables would be called {row}; ask for them one by one")

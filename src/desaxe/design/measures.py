@@ -100,7 +100,7 @@ def _inputs(designs: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _slopes(name: str, inputs: Mapping[str, Any]) -> dict[str, str]:
-    """The names of the derivatives by the inputs that vary, by all inputs of one design."""
+    """The names of the derivatives with respect to the inputs that vary, by all inputs of one design."""
     varying = [p for p, v in inputs.items() if not callable(v) and np.ndim(v)]
     slopes = {p: sensitivity(name, p) for p in varying or inputs if not callable(inputs[p])}
     return {p: slope for p, slope in slopes.items() if has(slope, "omega" in inputs)}
@@ -111,7 +111,7 @@ NAMED = ("margin", *WHOLE, *VELOCITIES)
 
 
 class Measured(NamedTuple):
-    """Values of one measure over designs, and their derivatives by the parameters that it depends on."""
+    """Values of one measure over designs, and their derivatives with respect to its parameters."""
 
     value: Array
     gradient: Mapping[str, Array]

@@ -41,7 +41,7 @@ def solve(
     sliders: Any = None,
     **inputs: Any,
 ) -> dict[str, Any]:
-    """All values of one input, within a range, at which a quantity of the design has a given value.
+    """All values of one input within a range at which a quantity of the design takes a required value.
 
     over     dict of the input -> (low, high)
     where    dict of one measure, as in `optimize`, -> its value: {("absmax", "a_C"): 900.0}; a named one may

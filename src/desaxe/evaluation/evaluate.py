@@ -55,33 +55,33 @@ def evaluate(
     AB, BC   lengths of crank (>= 0) and rod (> 0) [m]
     omega0   crank speed at theta = 0 [rad/s]; omega^2 = omega0^2 + 2 alpha theta (paper A)
     alpha    crank acceleration [rad/s^2], constant
-    omega    crank speed at this instant, instead of omega0: a given state, whose sensitivities with
-             respect to theta hold omega fixed, and which has `_wrt_omega`
-    branch   +1 (the papers) or -1: on which side of the crank pin the slider is
+    omega    crank speed at this instant, instead of omega0: a prescribed state; sensitivities with
+             respect to theta then hold omega fixed, and `_wrt_omega` exists
+    branch   +1 (the papers) or -1: the side of the crank pin on which the slider lies
     m_crank, m_rod, m_slider   masses [kg]
     I_crank, I_rod     moments of inertia about the centre of mass [kg m^2]
     r_crank, r_rod     centres of mass: from A towards B, from B towards C [m]; half of AB and BC where
-                       they are not given, and then a derivative by AB or BC moves them too
+                       not given; a derivative with respect to AB or BC then moves them, too
     F_X, F_Y, g_X, g_Y external force on the slider [N], gravity [m/s^2]; F_X and F_Y may vary with the
              motion: `over_theta`, `over_Y`, `over_stroke`, `over_V`, `spring`, `damper`, a sum of them, or
              a function of any of theta, omega, Y, s, V_C; derivatives are then total ones
-    mu       Coulomb friction of the slider's guide, against its motion or the one that alpha starts. There
-             is none at rest; for the breakaway torque pass a tiny omega0
+    mu       Coulomb friction coefficient of the slider's guide; friction opposes the motion, or the one that
+             alpha starts. There is none at rest; for the breakaway torque pass a tiny omega0
     accuracy "standard": within 8 ulp x (1 + the sum of condition numbers), next to singular points too;
-             "extended": within 2 ulp, in pairs of doubles, 3 to 16 times the time; or the error that you can
-             bear, such as 1e-14, for the cheaper of the two that keeps it
-    threads  for arrays: the number of threads; by default as many as speed it up
+             "extended": within 2 ulp, in pairs of doubles, 3 to 16 times the time; or an acceptable error,
+             such as 1e-14, for the cheaper of the two that meets it
+    threads  for arrays: the number of threads; default: as many as speed it up
     out      for arrays: the array to fill, or a dict name -> array; those that share memory are filled one
              after the other
-    quality  True: for each name, in place of the value, an object with `value`, `conditions` (input ->
+    quality  True: for each name, instead of the value, an object with `value`, `conditions` (input ->
              |input/value d value/d input|), `error_bound` (of the rounding) and `digits`; loads are
              numbers or tables then
-    sliders  filled in by a `Crankshaft`, whose sums and single sliders the names are
+    sliders  passed by a `Crankshaft`: the names are its sums and those of single sliders
 
-    Labelled arrays (xarray) broadcast by the names of their dimensions, and labelled arrays come back.
-    Inputs that the names do not need may be left out; masses and loads are 0 without. A number may
-    carry its unit: "10 mm", or a pint quantity. An infeasible point gives NaN; ask for `status` to learn
-    why: 0 ok, 1 cannot be assembled here, 2 at a change point, 3 stalled, 4 bad input (an array's element
+    Labelled arrays (xarray) broadcast by the names of their dimensions; the result is labelled, too.
+    Inputs that the names do not need may be omitted; masses and loads default to 0. A number may be a text
+    with a unit, "10 mm", or a pint quantity. An infeasible point is NaN; request `status` to learn
+    why: 0 ok, 1 cannot be assembled here, 2 at a change point, 3 stalled, 4 bad input (elements of arrays
     only), and, for forces or with mu, 5 friction jams (no forces balance) or 6 two sets of
     forces balance. Raises ValueError for an unknown name or a bad value, TypeError for a missing input.
 

@@ -36,17 +36,17 @@ def function(
 ) -> "Function":
     """A prepared callable: quantities as a function of some inputs, all others fixed.
 
-    names   one name (calls give an array) or a list (calls give a tuple)
-    inputs  what is given in each call, in this order or by keyword
-    fixed   the other inputs of `evaluate` as numbers, `branch` and `accuracy` among them
+    names   one name (calls return an array) or a list (calls return a tuple)
+    inputs  the arguments of each call, in this order or by keyword
+    fixed   the other inputs of `evaluate` as numbers, including `branch` and `accuracy`
 
         f = dx.function(["V_C", "a_C"], inputs=("theta", "ec"), AB=0.125, BC=0.35, omega0=157.08)
         V_C, a_C = f(theta, ec)
         f.jacobian(theta, ec)["a_C"]["ec"]
 
-    Compiled when it is made (or loaded, if that was done before). It always runs the same kernel: a point has
-    the same digits in an array of any shape and order, in every process of a machine. A bad or infeasible
-    point is NaN without a warning; ask for `status` to learn why. Raises as `evaluate` does when it is made.
+    Compiled when it is made, it always runs the same kernel: a point has the same digits in an array of any
+    shape and order, in every process on one computer. A bad or infeasible point is NaN without a warning;
+    request `status` to learn why. Creating it raises as `evaluate` does.
 
     See docs/choose.md: which call for which question.
     """
@@ -172,9 +172,9 @@ class Function:
         return result
 
     def jacobian(self, *args: Any, **named: Any) -> dict[str, dict[str, Any]]:
-        """The exact derivatives by the inputs: dict name -> dict input -> array of the broadcast shape.
+        """The exact derivatives: dict name -> dict input -> array of the broadcast shape.
 
-        Raises ValueError where the derivation has no derivative by an input.
+        Raises ValueError where the derivation has no derivative with respect to an input.
         """
         args, _ = self._in_order(args, named)
         known = dict(zip(self._slopes.names, self._slopes(*args), strict=True))
@@ -201,7 +201,8 @@ class Function:
                 if has(slope, state, self._known):
                     requested[slope] = None
                 elif parameter in needed and name != "margin":
-                    raise ValueError(f"jacobian: the derivative of {name} by {parameter} is not derived")
+                    derivative = f"the derivative of {name} with respect to {parameter}"
+                    raise ValueError(f"jacobian: {derivative} is not derived")
         return Function(tuple(requested), False, self.inputs, self.fixed, self._known)
 
     @computed_once

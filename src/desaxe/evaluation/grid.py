@@ -53,13 +53,13 @@ def grid(
 ) -> "xr.Dataset | dict[str, Array]":
     """Quantities over the outer product of the inputs, as an xarray.Dataset with units.
 
-    The inputs are those of `evaluate`. Each 1-d input is a dimension, in the order given; a number
-    becomes a coordinate without one, and a load that varies with the motion follows theta: `over_theta`,
-    `over_Y`, others of `evaluate`, or a labelled array over the dimension theta. The Dataset has the names
-    requested over all dimensions, `status` (int8, with CF flags) and `margin`, over those that it depends on.
+    The inputs are those of `evaluate`. Each 1-d input is a dimension, in the order of the call; a number
+    becomes a scalar coordinate, and a load that varies with the motion follows theta: `over_theta`,
+    `over_Y` and the others of `evaluate`, or a labelled array over the dimension theta. The Dataset holds the
+    requested names over all dimensions, `status` (int8, with CF flags), and `margin` over the lengths.
 
-    With `out` (an array, or a dict name -> array, of the grid's shape) the arrays are filled and
-    returned as a dict, and xarray is not needed. Otherwise needs the extra `labelled`. Raises as
+    With `out` (an array, or a dict name -> array, of the shape of the grid) these arrays are filled and
+    returned as a dict, and xarray is not needed; otherwise the extra `labelled` is. Raises as
     `evaluate` does, and for an input of more than one dimension.
 
     `reduce={"theta": "absmax"}` (max, min, absmax, mean, rms, or a list of these) reduces an axis

@@ -73,7 +73,7 @@ class LoadInputs(NamedTuple):
     def _of_motion(
         self, name: str, load: OfMotion, motion: Mapping[str, Any], inputs: Mapping[str, Any]
     ) -> dict[str, Any]:
-        """A load over columns of the motion, and its derivatives by the parameters that are needed."""
+        """A load over columns of the motion, and its derivatives with respect to the needed parameters."""
         way = ahead(motion, way_of(inputs)) if load.has_ways else 1.0
         with naming(name):
             value, by = load.partials({**motion, "way": way})

@@ -1,7 +1,7 @@
 """Loads over columns of the motion: functions, springs, dampers, tables over the speed, and sums of loads.
 
-A load of this kind tells its value and its derivative by each column that it needs. By the chain rule the
-rest follows: dF/dp is the sum of dF/dcolumn dcolumn/dp.
+A load of this kind tells its value and its derivative with respect to each column that it needs. By the chain
+rule the rest follows: dF/dp is the sum of dF/dcolumn dcolumn/dp.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -29,7 +29,7 @@ class OfMotion(Load):
     over = "the motion"
 
     def total(self, slopes: Mapping[str, Any], parameter: str, motion: Mapping[str, Any]) -> Any:
-        """The derivative by a parameter, from those by the columns."""
+        """The derivative with respect to a parameter, from those by the columns."""
         moved = {c: 1.0 if c == parameter else motion.get(f"{c}_wrt_{parameter}", 0.0) for c in slopes}
         return sum(slope * moved[column] for column, slope in slopes.items())
 
@@ -48,7 +48,7 @@ class FunctionOfMotion(OfMotion):
     """A user's function of columns of the motion.
 
     function    called with the arguments in their order
-    derivatives by each argument; None where they are not known
+    derivatives with respect to each argument; None where they are not known
     centre      the dead centre from which an argument Y is measured, as a distance
     """
 
@@ -240,7 +240,7 @@ class SumOfLoads(OfMotion):
         return Partials(value, slopes)
 
     def by(self, now: Mapping[str, Any]) -> dict[str, Any]:
-        """The derivatives by the numbers of all members."""
+        """The derivatives with respect to the numbers of all members."""
         parts = [load.by(now) for load in self.members]
         return {name: self.terms[k][0] * parts[k][own] for name, (k, own) in self._named.items()}
 

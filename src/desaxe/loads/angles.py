@@ -56,7 +56,7 @@ def zero_of(load: Load, lengths: Sequence[Array], branch: int) -> Array:
 def shift(kept: Sequence[str], parameter: str, known: Mapping[str, Any]) -> Any:
     """By how much a parameter moves the angle at which a quantity, or the difference of two, stays the same.
 
-    known   their derivatives by the parameter, 0 where missing, and that of the first by theta
+    known   their derivatives with respect to the parameter, 0 where missing, and that of the first by theta
     """
     slope, *centre = (known.get(sensitivity(name, parameter), 0.0) for name in kept)
     return -(slope - sum(centre)) / known[sensitivity(kept[0], "theta")]

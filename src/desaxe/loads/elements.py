@@ -64,7 +64,7 @@ class Spring(Element):
         return Table((self.free,), (row, row))
 
     def by(self, now: Mapping[str, Any]) -> dict[str, Any]:
-        """The derivatives by stiffness and free position."""
+        """The derivatives with respect to stiffness and free position."""
         stretch = now["Y"] - self.free
         return {"stiffness": -stretch, "free": 0.0 * stretch + self.stiffness}
 
@@ -87,7 +87,7 @@ class Damper(Element):
         return Table((0.0,), tuple((0.0, -self.linear, side * self.quadratic, 0.0) for side in (1.0, -1.0)))
 
     def by(self, now: Mapping[str, Any]) -> dict[str, Any]:
-        """The derivatives by both coefficients."""
+        """The derivatives with respect to both coefficients."""
         V = now["V_C"]
         return {"linear": -V, "quadratic": -abs(V) * V}
 

@@ -54,7 +54,7 @@ def outside() -> int:
 
 
 class Partials(NamedTuple):
-    """The value of a load and its derivatives by the columns of the motion."""
+    """The value of a load and its derivatives with respect to the columns of the motion."""
 
     value: Any
     slopes: dict[str, Any]
@@ -130,13 +130,13 @@ class Load(ABC):
     def by_at(
         self, values: Callable[[list[str]], Mapping[str, Any]], theta: Any, omega: Any
     ) -> dict[str, Any]:
-        """The derivatives by its numbers along a motion; values: of names there, by name."""
+        """The derivatives with respect to its numbers along a motion; values: of names there, by name."""
         motion = values([name for name in self.motion((), True) if name != "omega"])
         way = motion.get("V_C", motion.get("Y_wrt_theta"))
         return self.by({**motion, "theta": theta, "omega": omega, "way": way})
 
     def motion(self, parameters: Iterable[str] = (), state: bool = False) -> tuple[str, ...]:
-        """The names of the motion from which the load and its derivatives by these parameters follow.
+        """The names of the motion from which the load and these derivatives follow.
 
         state  whether omega is an input
         """
@@ -229,7 +229,7 @@ class OverTheta(Load):
         return self._in_its_units(self.value, {"theta": theta})
 
     def partials(self, now: Mapping[str, Any]) -> Partials:
-        """The value and, where it is known, the derivative by theta."""
+        """The value and, where it is known, the derivative with respect to theta."""
         value, slope = self.both(now["theta"])
         return Partials(value, {} if slope is None else {"theta": slope})
 
@@ -401,7 +401,7 @@ class OverY(Load):
 def ahead(motion: Mapping[str, Any], way: Any) -> Any:
     """Negative where the slider goes inward; at a dead centre where it will.
 
-    motion   Y and its derivatives by theta
+    motion   Y and its derivatives with respect to theta
     way      negative where the crank turns backwards
     """
     _, slope, bend = (motion[name] for name in POSITION)

@@ -49,7 +49,7 @@ class Motor(ABC):
 
     @abstractmethod
     def both(self, omega: Any, row: Mapping[str, Any]) -> tuple[Any, Any]:
-        """The torque and its derivative by the speed, with these values of the parameters."""
+        """The torque and its derivative with respect to the speed, with these values of the parameters."""
 
     def by(self, omega: Any, row: Mapping[str, Any]) -> dict[str, Any]:
         """The derivatives of the torque by the parameters."""
@@ -95,7 +95,7 @@ class OverOmega(Motor):
         return self.table.knots
 
     def both(self, omega: Any, row: Mapping[str, Any]) -> tuple[Any, Any]:
-        """The torque and its derivative by the speed."""
+        """The torque and its derivative with respect to the speed."""
         value, slope = self.table.both(np.asarray(omega))
         return value, slope
 
@@ -133,7 +133,7 @@ class Kloss(Motor):
         return replace(self, **dict[str, Any](row))
 
     def both(self, omega: Any, row: Mapping[str, Any]) -> tuple[Any, Any]:
-        """The torque and its derivative by the speed."""
+        """The torque and its derivative with respect to the speed."""
         _, slip, speed, gear = (row[r.name] for r in ROWS)
         torque, bend = self._at(omega, row)
         return torque, bend * (-gear / (speed * slip))
@@ -150,7 +150,7 @@ class Kloss(Motor):
         }
 
     def _at(self, omega: Any, row: Mapping[str, Any]) -> tuple[Any, Any]:
-        """The torque, and its derivative by the slip over that of breakdown."""
+        """The torque, and its derivative with respect to the slip over that of breakdown."""
         most, slip, speed, gear = (row[r.name] for r in ROWS)
         u, top = (1.0 - gear * omega / speed) / slip, gear * np.copysign(most, speed)
         square = u * u

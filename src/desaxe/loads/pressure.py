@@ -46,7 +46,7 @@ class Piston:
         as_meant = {unit: abs(log(self.written * size / ATMOSPHERE)) for unit, size in UNITS.items()}
         meant = min(as_meant, key=as_meant.__getitem__)
         warn(
-            f"ambient = {self.written:.6g} Pa beside pressures up to {largest:.6g} Pa, almost surely a slip: "
+            f"ambient = {self.written:.6g} Pa beside pressures up to {largest:.6g} Pa, surely a slip: "
             f'write ambient = "{self.written:.6g} {meant}"',
             UnitWarning,
             stacklevel=outside(),

@@ -204,9 +204,9 @@ class MakeOverStroke(MakeTable):
     Forces keep the sign of +Y. Beyond the distances the values at the ends hold. Derivatives by a length
     include how the dead centre moves: dF/dp = F'(d) sign (dY_dc/dp - Y_wrt_p). Where a design has no such
     dead centre forces are NaN, with status 1; at a change point, where the inner one moves infinitely fast
-    with the lengths, derivatives by these are, with status 2. `over_stroke.read("press.csv", distance="mm",
-    value="kN", dead_centre="outer")` reads the columns distance, outward and, where there is one, inward.
-    `over_stroke(f, derivative=None, dead_centre=)` makes a load of a function of the distance.
+    with the lengths, derivatives with respect to these are, with status 2. `over_stroke.read("press.csv",
+    distance="mm", value="kN", dead_centre="outer")` reads the columns distance, outward and, where there is
+    one, inward. `over_stroke(f, derivative=None, dead_centre=)` makes a load of a function of the distance.
 
     `machine.over_stroke` is the same in the units of a machine: its plain distances and forces.
     """

@@ -37,7 +37,7 @@ class FunctionInUnits:
         return tuple(_filled(array, value) for array, value in zip(outs, values, strict=True))
 
     def jacobian(self, *args: Any, **named: Any) -> dict[str, dict[str, Any]]:
-        """The exact derivatives by the inputs: dict name -> dict input -> array."""
+        """The exact derivatives with respect to the inputs: dict name -> dict input -> array."""
         with errors_in(self._show.system):
             result = self.si.jacobian(*self._positional(args), **self._named(named))
         return {

@@ -71,16 +71,16 @@ def _meant(word: Any, allowed: Iterable[str]) -> str:
 
 
 class Machine(Mapping[str, Any]):
-    """A machine: its lengths, speed, masses and loads, frozen, with every public call as a method.
+    """A machine: frozen lengths, speed, masses and loads, with every public call as a method.
 
         press = dx.Machine(ec="10 mm", AB="50 mm", BC="200 mm", omega0="300 rpm", m_slider=4, F_Y=-600)
         press.peak("T_in")                       # dx.peak("T_in", **press)
         press.drive(fluctuation=0.03)
         press.replace(ec="12 mm").events()["stroke"]
 
-    inputs  as in `evaluate`, all but theta: numbers, texts with units, pint quantities, loads, and arrays of
-            one dimension for families of designs. Or a mapping of these, `units` among them, or a scene as a
-            mapping (`Machine.read` takes the path of one). What is not given has no effect
+    inputs  those of `evaluate` except theta: numbers, texts with units, pint quantities, loads, and arrays of
+            one dimension for families of designs. Or a mapping of these, including `units`, or a scene as a
+            mapping (`Machine.read` takes the path of one). Inputs that are not given have no effect
     branch  +1 or -1
     units   the units of plain numbers, here and in the methods, and of results, pictures, reports, exports:
             "mm, deg, rpm", or a mapping of dimensions and quantities to units, {"length": "mm"}. Only
@@ -92,8 +92,8 @@ class Machine(Mapping[str, Any]):
     arguments; `as_quantity=True` gives pint quantities. `plot`, `replace`, `scene`, `to_scene` and `in_units`
     are its own. Two machines are equal if their inputs and units are.
 
-    Raises ValueError or TypeError that name the input, as `evaluate` does; a `UnitWarning` for a number that
-    is almost surely meant in another unit, such as a crank of 125 m.
+    Raises ValueError or TypeError that name the input, as `evaluate` does, and warns (`UnitWarning`) of a
+    number that is almost certainly in another unit, such as a crank of 125 m.
     """
 
     __slots__ = ("_given", "_inputs", "definitions", "units")

@@ -240,7 +240,7 @@ def _split(units: Any, inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[
 
 
 def _at_a_point(design: Any, name: str, theta: Mapping[str, Any]) -> dict[str, Any]:
-    """The value and its derivatives by the machine's inputs, as a peak gives them."""
+    """The value and its derivatives with respect to the machine's inputs, as a peak gives them."""
     rows = {p: sensitivity(name, p) for p in design if p != "branch"}
     rows = {p: row for p, row in rows.items() if has(row, "omega" in design)}
     result = design.evaluate([name, *rows.values()], **theta)

@@ -14,7 +14,7 @@ quantity_units  units of inputs, quantities and their derivatives, in SI and in 
 messages      texts that know which of their numbers are quantities, for a front end's units
 ranges        `between` and `plus_minus`: inputs with a range or tolerance
 public        public functions, which warn of slips of units: sizes that are typical
-slips         plain numbers that are almost surely in another unit
+slips         plain numbers that are almost certainly in another unit
 own           user-defined quantities: the register
 own_lines     their lines in the Program, with derivatives
 load_lines    loads over the motion as lines of a Program, and total derivatives

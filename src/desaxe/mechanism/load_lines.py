@@ -1,7 +1,8 @@
 """Loads over the motion as lines of a Program: what they are looked up at, and the totals that they make.
 
-A Program has a force as an input, and partial derivatives by it. Here the force becomes lines, which look up
-a table that is known at run time, and what depends on it becomes total: with the terms of each derivative,
+A Program has a force as an input, and partial derivatives with respect to it. Here the force becomes lines,
+which look up a table that is known at run time, and what depends on it becomes total: with the terms of each
+derivative,
 
     dq/dp = q_wrt_p + q_wrt_F dF/dp,    dF/dtheta = F'(theta),    dF/dp = F'(Y) Y_wrt_p
 
@@ -113,7 +114,7 @@ class _Writer:
         self.notes = dict(program.notes)
         self.marks: dict[str, list[tuple[str, str, Argument]]] = {}  # of a force: table, is there, moves
         self.slopes: dict[tuple[str, str], Argument] = {}
-        self.reduced: dict[str, Argument] = {}  # lines of reduced angles, with their derivatives by theta
+        self.reduced: dict[str, Argument] = {}  # lines of reduced angles, with their slopes
         changed = set(INPUTS) & {"F_X", "F_Y"}
         self.lines: list[Line] = []
         self.late: list[Line] = []
@@ -128,7 +129,7 @@ class _Writer:
         return name
 
     def load(self, load: LoadLines, parameters: set[str]) -> None:
-        """The lines of a force and of its derivatives by these parameters."""
+        """The lines of a force and of its derivatives with respect to these parameters."""
         force, start = load.force, len(self.lines)
         if not load.over:
             self.slopes.update({(force, p): f"{force}_by_{p}" for p in parameters})

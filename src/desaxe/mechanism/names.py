@@ -69,7 +69,7 @@ def joined(base: str, parameters: Iterable[str]) -> str:
 
 
 def per(unit: "Unit", *parameters: str) -> "Unit":
-    """The unit of a derivative by these parameters."""
+    """The unit of a derivative with respect to these parameters."""
     with IMPORTS:
         from ..units.parse import coherent_unit
 

@@ -158,7 +158,7 @@ def derivative_row(name: str, unit: str, parameters: tuple[str, ...]) -> Row:
 
     *before, last = parameters
     text = unit_text(per(coherent_unit(unit), *parameters))
-    return text, f"derivative of {joined(name, before)} by {last}", ""
+    return text, f"derivative of {joined(name, before)} with respect to {last}", ""
 
 
 def depends(leaf: str, parameter: str) -> bool:

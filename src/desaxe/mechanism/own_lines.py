@@ -114,7 +114,7 @@ class _Writer:
         self.notes[result] = Note(*derivative_row(definition.name, definition.unit, parameters))
 
     def _chain(self, parameters: tuple[str, ...]) -> Chain:
-        """All derivatives by some parameters: those by the last one of the derivatives by the others."""
+        """All derivatives with respect to some parameters, taken one after the other."""
         if parameters in self.chains:
             return self.chains[parameters]
         *before, last = parameters

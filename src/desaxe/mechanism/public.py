@@ -1,6 +1,6 @@
 """Public functions of `desaxe`: those of its rooms, which warn of slips of units in their keywords.
 
-A number beyond the size that is typical of an input is almost surely in another unit than it is taken for.
+A number beyond the size that is typical of an input is almost certainly in another unit than it is taken for.
 """
 
 from collections.abc import Callable, Mapping

@@ -75,7 +75,7 @@ class UnitSystem:
         return self.of_unit(si_unit(name))
 
     def find(self, name: str, by: str = "") -> Conversion | None:
-        """The conversion of a name, or of its derivative by another one; None where it has no unit."""
+        """The conversion of a name, or of its derivative; None where it has no unit."""
         known = {} if register().rows else self.remembered
         if (name, by) not in known:
             known[name, by] = self._look_up(name, by)
@@ -135,7 +135,7 @@ def _simplified(name: str, quotient: str) -> str:
 
 
 class QuantityUnit(str):
-    """The SI unit of a quantity, an input or a measure, or of its derivative by another one."""
+    """The SI unit of a quantity, an input or a measure, or of its derivative with respect to another one."""
 
     name: str = ""
     by: str = ""

@@ -12,7 +12,7 @@ from ..support.shown import shown
 from ..units.parse import exact, rounded
 from ..units.text import with_unit_of
 from .inputs import row_of
-from .messages import named
+from .messages import amount, named
 from .read import in_si
 
 
@@ -54,7 +54,7 @@ def plus_minus(value: Any, tolerance: Any) -> PlusMinus:
 def between(low: Any, high: Any) -> Between:
     """The ends of a range, for `enclose`, `tolerance` (middle and half the width) and `optimize`.
 
-    Each is a number in SI units, or in those of the machine whose call it is given to, or text with a unit.
+    Each is a number in SI units, or in those of the machine whose method it is passed to, or a text.
 
         >>> import desaxe as dx
         >>> dx.between("9.9 mm", "10.1 mm")
@@ -102,7 +102,7 @@ def _tolerance(name: str, given: PlusMinus) -> tuple[Fraction, Fraction]:
     else:
         result = _number(name, tolerance, given)
     if result < 0:
-        raise ValueError(named(name, given) + ": a tolerance must be at least 0")
+        raise ValueError(f"{name}: a tolerance of " + amount(name, float(result)) + " is below 0")
     return value, result
 
 

@@ -1,4 +1,4 @@
-"""Plain numbers that are almost surely in another unit than they are taken for, such as a crank of 125 m.
+"""Plain numbers that are almost certainly in another unit than they are taken for, such as a crank of 125 m.
 
 A warning, never an error, for numbers that a person has typed, in a few digits: also the ends of ranges and
 the largest number of a list, never an array. A force has no size of its own by which a slip would show; but
@@ -34,7 +34,7 @@ WARNED: set[Any] = set()  # kinds of slips in calls of functions
 
 
 class UnitWarning(UserWarning):
-    """A number that is almost surely meant in another unit than it is taken for."""
+    """A number that is almost certainly meant in another unit than the one assumed."""
 
 
 class Slip(NamedTuple):
@@ -51,7 +51,7 @@ def warn_of_slips(
     inputs: Mapping[str, Any] = MappingProxyType({}),
     once: bool = False,
 ) -> None:
-    """Warn, in one warning, of plain numbers that are almost surely slips; `units` are what they mean.
+    """Warn, in one warning, of plain numbers that are almost certainly slips; `units` are what they mean.
 
     inputs   in SI units or as texts, beside which an offset is too small or too large, a force too large
     once     of each kind once a process
@@ -64,7 +64,7 @@ def warn_of_slips(
         WARNED.update(slip.kind for slip in slips)
     if slips:
         text = "; ".join(slip.words for slip in slips)
-        warnings.warn(f"almost surely a slip: {text}", UnitWarning, stacklevel=stacklevel)
+        warnings.warn(f"almost certainly a slip: {text}", UnitWarning, stacklevel=stacklevel)
 
 
 def _in_si(name: str, value: Any) -> Any:

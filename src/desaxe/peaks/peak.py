@@ -55,8 +55,8 @@ def peak(
     """The extreme value of a quantity over the crank angle; designs broadcast like NumPy.
 
     kind    "absmax" (the largest magnitude), "max" or "min"
-    theta   range of crank angles [rad]; its ends count. By default a turn, or those until the loads repeat
-    threads the number of threads, by default as many as speed it up; the result is the same
+    theta   range of crank angles [rad], ends included; default: one turn, or the cycle of the loads
+    threads the number of threads; default: as many as speed it up. The result does not depend on it
     others  as in `evaluate`, masses and loads among them. F_X and F_Y may vary with the motion; at a jump
             both one-sided limits count, at an end of the range that from within and the value itself.
             `gradient` by such a force is that by a constant added to it
@@ -64,9 +64,9 @@ def peak(
 
     Returns a dict, floats for one design and arrays for many:
 
-    value     the extreme value; a magnitude for "absmax". inf where it grows without bound at a
+    value     the extreme value; a magnitude for "absmax"; inf if it grows without bound at a
               limit angle of a mechanism that cannot turn fully
-    theta     the crank angle where it is reached; next to a jump the nearest double on that side
+    theta     the crank angle at which it is reached; next to a jump the nearest double on that side
     side      of a load's jump (int8): -1 where the value is the limit from smaller theta, 1 from larger
               theta, 0 where nothing jumps
     gradient  dict parameter -> exact derivative of the value (ec, AB, BC, omega0 or omega, alpha, as
@@ -80,8 +80,8 @@ def peak(
               forces balance at some: the value is that of all others, inf where it grows without
               bound towards those at which friction jams
 
-    Where two angles share the extreme value, as by symmetry at ec = 0, one of them is returned, and the
-    gradient is the one-sided derivative there.
+    If two angles share the extreme value, as by symmetry at ec = 0, one of them is returned, with the
+    one-sided derivative there.
 
     Warns (LoadWarning) of a long array for F_X or F_Y and no other array: those are designs, not angles.
     Raises ValueError for an unknown quantity or kind.

@@ -203,7 +203,7 @@ def complete(
 ) -> NDArray[np.bool_]:
     """Add limit angles, ends of the force balance and status to the results.
 
-    Which have a derivative by each of the parameters is returned: a row for each parameter.
+    Which have a derivative with respect to each of the parameters is returned: a row for each parameter.
 
     value   signed, also for "absmax"
     kinks   for each design angles at which a load has a kink: there the slope does not vanish

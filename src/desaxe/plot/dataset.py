@@ -174,7 +174,7 @@ def _attributes(name: str, units: Any) -> dict[str, Any]:
     base, _, parameter = name.partition("_wrt_")
     if parameter and base in ("theta", "omega"):
         unit = units.of(base).per([units.of(parameter)]).unit
-        return {"units": unit, "long_name": f"derivative of {base} by {parameter}"}
+        return {"units": unit, "long_name": f"derivative of {base} with respect to {parameter}"}
     meaning = "time" if name == "t" else INPUTS[name].meaning if name in INPUTS else None
     words = attributes(name, state=True) if meaning is None else {"long_name": meaning}
     return {**words, "units": units.of(name).unit}

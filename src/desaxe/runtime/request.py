@@ -146,7 +146,7 @@ def check_extended(own: tuple[Definition, ...]) -> None:
 
 @lru_cache(maxsize=1024)
 def _moves(centre: str, names: tuple[str, ...], own: tuple[Definition, ...]) -> bool:
-    """True if these names depend on a centre of mass or on its derivative by its link's length."""
+    """True if these names depend on a centre of mass or on how it moves with the length of its link."""
     program = program_of(names, Variant(own=own))
     lines = (line.name for line in program.lines)
     return centre in program.inputs or any(parts(name)[0] == centre for name in lines)

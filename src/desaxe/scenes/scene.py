@@ -119,11 +119,11 @@ def _arrived(content: Content, name: str, shown_in: UnitSystem = SI) -> Scene:
 
 
 def scene(source: str | PathLike[str] | Mapping[str, Any]) -> Scene:
-    """Read and check a scene from a TOML file, or from a mapping of the same form.
+    """Read and check a scene from a TOML file or a mapping of the same form.
 
     The file is data: nothing in it is ever executed. Quantities that it defines (`[quantities.NAME]`) are
-    known to every call from then on, as those of `define` are. Raises SceneError (a ValueError) that
-    names the key, its value and what is allowed; OSError where the file cannot be read. Needs the extra
+    known to every later call, like those of `define`. Raises SceneError (a ValueError) that
+    names the key, its value and the allowed values; OSError if the file cannot be read. Needs the extra
     `units` for a unit that only pint knows.
 
         dx.scene("examples/compactor.toml").run()

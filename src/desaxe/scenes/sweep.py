@@ -43,26 +43,26 @@ def sweep(
     peaks      refined peaks of each design beside the grid: a name, several, or a dict name -> "absmax",
                "max", "min" or several of these; `peak_absmax_a_C`, with its angle, status and gradient
                (`peak_absmax_a_C_theta`, `..._status`, `..._wrt_ec`); `names` may be empty then
-    store      the folder of the store, such as "press.zarr"; `xarray.open_zarr` reads it. What is
-               reduced, and peaks alone, may do without: the Dataset is in memory then
+    store      the folder of the store, such as "press.zarr"; `xarray.open_zarr` reads it. Optional with
+               `reduce`, and for peaks alone: the Dataset is then in memory
     chunks     as in xarray: a dict, a number or "auto" (16 MiB a variable at most, the last dimensions
                whole); dimensions not named are whole
     memory     bytes, or text such as "200 MB", that the chunks in flight may take (256 MB without);
                the process itself takes some 200 MB more
-    overwrite  replace a store of another sweep or with other chunks; one of this sweep is resumed
+    overwrite  replace a store of another sweep or with other chunks; a store of this sweep is resumed
     client     a `distributed.Client`: the chunks are computed and written by its workers, which must
                see the same folder
-    threads    chunks at once, as many as there are cores without; fewer where memory ends
-    progress   called with points done, points in all and what is being done; without it a terminal
-               shows points, rate and time left
+    threads    chunks at a time; default: the number of cores, fewer if memory is short
+    progress   called with the points done, the total and a description; without it a terminal
+               shows points, rate and remaining time
 
-    A sweep that was stopped goes on where it stopped when it is called again: chunks that are whole
-    are kept, and the finished store has the same values as that of an undisturbed run. A finished store
-    is read, checked and left as it is; one whose metadata or coordinates are damaged is refused by name.
+    If a sweep is stopped, the same call resumes it: whole chunks are kept, and the finished store
+    has the same values as that of an uninterrupted run. A finished store
+    is read, checked and left unchanged; one with damaged metadata or coordinates is refused by name.
 
-    Raises FileExistsError for a store of another request, version or derivation, with what differs;
-    BlockingIOError while another sweep writes it; OSError where the disk has too little room;
-    MemoryError where a chunk needs more than `memory`; else as `grid` does. Needs the extra `scale`.
+    Raises FileExistsError, with the differences, for a store of another request, version or derivation;
+    BlockingIOError while another sweep writes it; OSError if the disk is too full;
+    MemoryError if a chunk needs more than `memory`; otherwise as `grid` does. Needs the extra `scale`.
 
         dx.sweep("press.toml", store="press.zarr", memory="500 MB")
         dx.sweep(["V_C", "a_C"], store="press.zarr", theta=th, ec=ecs, BC=bcs, AB=.125, omega0=157.08)

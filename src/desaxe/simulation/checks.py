@@ -198,7 +198,7 @@ def read_wrt(wrt: Any, inputs: Mapping[str, Any]) -> tuple[str, ...]:
             raise ValueError(f"wrt: no parameter {shown(name)}; {asked}there are {', '.join(known)}")
         if callable(inputs[name]):
             raise ValueError(
-                f"wrt: {name} = {shown(inputs[name])} is no number, there is no derivative by it"
+                f"wrt: {name} = {shown(inputs[name])} is no number, there is no derivative with respect to it"
             )
     for name in ("F_X", "F_Y"):
         load = inputs[name]

@@ -152,7 +152,7 @@ class Acting(NamedTuple):
         return [(1.0, self.value)]
 
     def slopes(self, t: Array, theta: Array, omega: Array) -> tuple[Any, Any, Any]:
-        """A torque of theta, omega and t, and its exact derivatives by theta and omega."""
+        """A torque of theta, omega and t, and its exact derivatives with respect to theta and omega."""
         value = self.value
         if isinstance(value, Motor):
             torque, slope = value.both(omega, value.numbers)
@@ -165,7 +165,7 @@ class Acting(NamedTuple):
         return value, 0.0, 0.0
 
     def by_time(self, t: float, theta: float, omega: float) -> float:
-        """The derivative by time, NaN where it is not known."""
+        """The derivative with respect to time, NaN where it is not known."""
         value = self.value
         known = isinstance(value, UserFunction) and value.derivative is not None
         return value.derivative.by_time(t, theta, omega) if known else 0.0  # type: ignore[union-attr]

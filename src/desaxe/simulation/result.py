@@ -71,7 +71,7 @@ class Simulation(Answer):
 
 
 def _units(result: Mapping[str, Any]) -> dict[str, Any]:
-    """The units of a motion; of a derivative by a parameter a quotient."""
+    """The units of a motion; of a derivative with respect to a parameter a quotient."""
     units: dict[str, Any] = {}
     for key in result:
         base, _, parameter = key.partition("_wrt_")

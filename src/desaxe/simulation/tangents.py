@@ -36,7 +36,7 @@ class Tangents:
         self.model, self.wrt, self.inputs = model, tuple(wrt), inputs
         follow = {n: a for n, a in inputs.items() if isinstance(a, OfMotion) and a.follows_speed}
         self.still = {**inputs, **dict.fromkeys(follow, 0.0)} if follow else None
-        self.several = "sliders" in inputs  # whose sums have derivatives by every input
+        self.several = "sliders" in inputs  # whose sums have derivatives with respect to every input
         if self.several and (still := inputs["sliders"].without_speed()):
             self.still = {"sliders": still}
         torque = model.drive.torque.value
@@ -83,7 +83,7 @@ class Tangents:
         return {name: np.broadcast_to(result[name], np.shape(theta)) for name in names}
 
     def _names(self, name: str, *state: str) -> list[str]:
-        """A quantity and its derivatives by these variables of the state and by the inputs."""
+        """A quantity and its derivatives with respect to these variables of the state and by the inputs."""
         slopes = [sensitivity(name, p) for p in ("theta", *state, *self.of_design) if not _is_mu(p)]
         return [name, *(slope for slope in slopes if self.several or has(slope.partition(".")[0], True))]
 

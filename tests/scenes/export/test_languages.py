@@ -83,7 +83,7 @@ def test_second_derivatives(module):
     for first, second, name in (("theta", "ec", "theta_ec"), ("BC", "AB", "AB_BC"), ("ec", "ec", "ec_ec")):
         exact = float(truth(f"V_C_wrt_{name}", **at))
         assert float(result[first][second]) == pytest.approx(exact, rel=1e-12)
-    with pytest.raises(NotImplementedError, match="a_C_wrt_ec_ec has no derived derivative by ec"):
+    with pytest.raises(NotImplementedError, match="a_C_wrt_ec_ec has no derived derivative with"):
         jax.hessian(lambda ec: module.a_C_wrt_ec(1.0, ec, 0.125, 0.25, 10.0, 0.5))(0.1)
 
 

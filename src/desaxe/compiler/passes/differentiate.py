@@ -67,7 +67,7 @@ CONSTANT = ("two_sum_error", "two_product_error", "rounding", "power_of_two", "l
 
 
 class Chain:
-    """The lines of the derivative by one parameter; the rules are those for balls, or others."""
+    """The lines of the derivative with respect to one parameter; the rules are those for balls, or others."""
 
     def __init__(self, parameter: str, rules: Mapping[str, str] = RULES, prefix: str = _PREFIX) -> None:
         self.parameter = parameter

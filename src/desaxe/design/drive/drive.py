@@ -58,9 +58,9 @@ def drive(
                               input that is a number and matters; of the flywheel by `fluctuation` too. At
                               a jump or kink of a load it is that of the limit, which moves along; NaN at
                               a kink that friction makes
-    status                    0 ok; 1 the crank cannot turn fully; 2 at a change point (derivatives by the
-                              lengths are NaN); 3 stalls within the turn; 5 friction jams, 6 two sets of
-                              forces balance. All is NaN but for 0 and 2
+    status                    0 ok; 1 the crank cannot turn fully; 2 at a change point (derivatives with
+                              respect to the lengths are NaN); 3 stalls within the turn; 5 friction jams, 6
+                              two sets of forces balance. All is NaN but for 0 and 2
 
     Integrals are taken to rounding, by Gauss's rule between the angles at which friction or a load has kinks,
     on panels that are halved until the torque and its derivatives are resolved. Raises ValueError for a bad
@@ -123,7 +123,7 @@ def _status(design: Turn) -> int:
 
 
 def _integrands(torque: Array, speed: Array) -> dict[str, tuple[Array, Any, Any]]:
-    """Integrands over the angle, and their derivatives by the torque, > 0 where it drives, and the speed."""
+    """Integrands over the angle, and their derivatives with respect to torque and speed."""
     driven = torque > 0.0
     return {
         "time": (1.0 / speed, 0.0, -1.0 / speed**2),
@@ -186,7 +186,7 @@ def _over_a_turn(
 
 
 def _peak(design: Turn, name: str, kind: str, **other: Any) -> dict[str, Any]:
-    """The extreme value over the cycle, its angle, and its derivatives by the parameters."""
+    """The extreme value over the cycle, its angle, and its derivatives with respect to the parameters."""
     inputs = {n: x for n, x in {**design.numbers, **design.loads, **other}.items() if x is not None}
     top = peak(name, kind=kind, theta=design.ends, branch=design.branch, **inputs)
     return {**top, "gradient": {p: top["gradient"].get(p, 0.0) for p in design.parameters}}

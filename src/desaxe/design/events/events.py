@@ -148,7 +148,7 @@ def _velocity(
     numbers: Numbers, direction: int, values: dict[str, Any], status: Any, lengths: tuple[Any, ...],
     omega: Any, branch: int,
 ) -> list[Any]:  # fmt: skip
-    """The largest |V_C| between two dead centres: value, crank angle, derivatives by lengths and omega0.
+    """The largest |V_C| between two dead centres: value, crank angle, derivatives (lengths, omega0).
 
     That is where the acceleration vanishes; without a crank, or at a change point, it may be an end itself,
     from which it grows as a root of the margin.

@@ -29,7 +29,7 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
     ec, AB, BC: numbers (or text with a unit) in metres, or arrays, which broadcast like NumPy. Gives a dict:
 
     margin           BC - AB - |ec| [m], of the doubles given, rounded once
-    gradient         its derivatives by ec, AB, BC (at ec = 0 that by ec is taken as 0)
+    gradient         its derivatives with respect to ec, AB, BC (at ec = 0 that by ec is taken as 0)
     can_turn         whether the crank can turn fully (margin >= 0)
     theta_intervals  list of (first, last) crank angles [rad] in which it can be assembled; an
                      interval that crosses 2 pi goes on beyond it. [(0, 2 pi)] where it can turn

@@ -1,4 +1,4 @@
-"""The model of a fit: predicted measurements, with exact derivatives by every unknown.
+"""The model of a fit: predicted measurements, with exact derivatives with respect to every unknown.
 
     measured = scale * q(theta + theta_offset; parameters) + bias
 
@@ -64,7 +64,7 @@ class FittedModel:
         return result
 
     def theta(self, x: Array, at: Array | None = None) -> tuple[Array, dict[str, Array]]:
-        """The crank angle at each sample, and its derivative by each unknown that moves it."""
+        """The crank angle at each sample, and its derivative with respect to each unknown that moves it."""
         value = dict(zip(self.names, x.tolist(), strict=True))
         at = self.data.at if at is None else at
         offset = value.get(OFFSET, 0.0)
@@ -86,7 +86,7 @@ class FittedModel:
     def quantities(
         self, x: Array, at: Array | None = None, sampled: Mapping[str, Array] | None = None
     ) -> tuple[dict[str, Array], dict[str, dict[str, Array]]]:
-        """Each quantity at each sample, and its derivatives by the unknowns; NaN where infeasible.
+        """Each quantity at each sample, and its derivatives; NaN where infeasible.
 
         at, sampled  other samples, and the inputs there that vary with them
         """

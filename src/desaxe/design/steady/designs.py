@@ -101,7 +101,7 @@ class DesignRows(NamedTuple):
         return np.asarray(self.each(self.way, x.ndim) * x)
 
     def torque(self, theta: Array, omega: Array) -> tuple[Array, Array]:
-        """The motor's torque and its derivative by the speed."""
+        """The motor's torque and its derivative with respect to the speed."""
         return self.source.both(theta, omega, {n: self.each(v, omega.ndim) for n, v in self.motor.items()})
 
     def values(self, names: Sequence[str], x: Array, **other: Any) -> dict[str, Array]:
@@ -162,7 +162,7 @@ def picked(value: Any, index: Any) -> Any:
 def course_of(designs: DesignRows, x: Array) -> Course:
     """The coefficients of the equation at places x, which do not depend on the speed.
 
-    inertia, slope             M_eff + J, and its derivative by theta
+    inertia, slope             M_eff + J, and its derivative with respect to theta
     load                       L, without loads that depend on the speed
     still, square, push        under friction the normal force at rest, by omega^2 and by T - L
     wedge, arm                 K on one side of the guide, and the arm of the friction

@@ -1,4 +1,4 @@
-"""Period, speeds, work and power of periodic motions, and their derivatives by every number.
+"""Period, speeds, work and power of periodic motions, and their derivatives with respect to every number.
 
 At an angle the required torque G(theta, omega, alpha; p) + J alpha is the motor's T(theta, omega; p). With
 z = omega^2, alpha = way z'/2, the change y = dz/dp at fixed x obeys the linear equation

@@ -32,7 +32,7 @@ EXPECTED = (
 class TorqueSource:
     """The torque of a call.
 
-    both      from angle, speed and parameters to the torque and its derivative by the speed
+    both      from angle, speed and parameters to the torque and its derivative with respect to the speed
     numbers   its parameters, by which there are derivatives: `by` returns them
     speeds    among which turns are tried
     knots     speeds at which it has a kink

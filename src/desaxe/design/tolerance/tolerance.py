@@ -46,7 +46,7 @@ def tolerance(
     sliders: Any = None,
     **inputs: Any,
 ) -> Tolerance:
-    """The scatter of a quantity whose inputs have tolerances or distributions.
+    """The scatter of a quantity due to tolerances or distributions of its inputs.
 
     name          a quantity at a crank angle, as for `evaluate` ("a_C", with theta=), or one of a whole
                   design: "stroke", "time_ratio", ..., or a peak such as ("absmax", "a_C")
@@ -60,7 +60,7 @@ def tolerance(
     Returns a dict that prints three lines: the value, its spread, what drives it; `report()` has all:
 
     value          with every input at its mean
-    gradient       dict of the exact derivatives by what varies
+    gradient       dict of the exact derivatives with respect to what varies
     first_order    dict mean, std: of the linear function with these derivatives
     monte_carlo    dict mean, std, mean_error, std_error (one standard error each), least, largest,
                    percentiles (dict percent -> value), samples, infeasible (share of samples without value)
@@ -181,7 +181,7 @@ def _function(name: Any, inputs: Mapping[str, Any], branch: int) -> SampledQuant
             raise ValueError("status is not a real number")
         for p in varying:
             if p in inputs_of(name, state) and not has(sensitivity(name, p), state):
-                raise ValueError(f"tolerance of {name}: its derivative by {p} is not derived")
+                raise ValueError(f"tolerance of {name}: its derivative with respect to {p} is not derived")
     return SampledQuantity(checked(name) if design else ("at", None, name), fixed, varying, branch)
 
 

@@ -267,7 +267,7 @@ class AtPlace(Points):
 
 @dataclass(frozen=True)
 class OfDesign(Step):
-    """A user's function of the design, with its derivatives by some parameters."""
+    """A user's function of the design, with its derivatives with respect to some parameters."""
 
     function: OwnMeasure
     numbers: tuple[tuple[str, float], ...]

@@ -44,7 +44,7 @@ def compile(
 ) -> Path:
     """Write the outputs of a scene as source code of its own, which needs nothing of desaxe.
 
-    What the scene fixes is folded in; what it gives as a list or range is an argument, in the order theta,
+    Numbers in the scene are folded in; its lists and ranges become arguments, in the order theta,
     ec, AB, BC, omega0 (or omega), alpha, then masses and loads. `to` is the language:
 
     numba       FILE.py, which needs NumPy and numba: `point(...)`, `evaluate(...)`, `run()`, which takes
@@ -60,14 +60,14 @@ def compile(
     fmu         FILE.fmu, a Functional Mock-up Unit of FMI 2.0 (extra `fmu`): model exchange and
                 co-simulation. A torque moves the crank; `input="omega"`: its speed is given
 
-    A path that ends as the language's files do is the file; any other is a folder, whose last part is the
+    A path with the suffix of the language is the file; any other is a folder, whose last part is the
     name. The same scene gives the same bytes.
-    `check=True` writes nothing and raises ValueError where the files are not what would be written. A file
-    that it did not write, or that was edited since, is left as it is, and FileExistsError raised, unless
+    `check=True` writes nothing and raises ValueError if the files are not up to date. A file
+    that desaxe did not write, or that was edited since, is left unchanged, and FileExistsError raised, unless
     `overwrite` is true.
 
-    Returns the path. Raises as `scene` does, SceneError where the scene asks for no outputs, and ValueError
-    for an unknown language, or a name that it cannot have.
+    Returns the path. Raises as `scene` does, SceneError if the scene requests no outputs, and ValueError
+    for an unknown language or an invalid name.
 
         dx.compile("examples/compactor.toml", "my_kernels.py")
         dx.compile("examples/compactor.toml", "press", to="c")

@@ -96,14 +96,15 @@ class _Writer:
         row = quantity(plain, not self.law)
         unit = f"{row.unit}*m" if name.startswith("C_inertia") else row.unit
         base, by = parts(name)
-        return unit, f"derivative of {base} by {', '.join(by)}" if by else row.meaning, row.source
+        meaning = f"derivative of {base} with respect to {', '.join(by)}" if by else row.meaning
+        return unit, meaning, row.source
 
     def guarded(self, program: Program) -> Program:
         """The program with bad arguments as NaN."""
         return guard_inputs(program, self.arguments, LEAST, {})
 
     def with_derivatives(self, names: Iterable[str]) -> dict[str, Program]:
-        """Programs of names and of what there is of their derivatives by the arguments."""
+        """Programs of names and of what there is of their derivatives with respect to the arguments."""
         result: dict[str, Program] = {}
         for name in (*names, *(f"{name}_wrt_{p}" for name in names for p in self.arguments)):
             try:

@@ -39,8 +39,8 @@ class PeakResult(RequestAnswer):
 
     `dataset` has over the designs' dimensions: `value`, `theta`, `side`, `status`, `value_wrt_<parameter>`
     and, where there is a baseline, `increase` over it in percent. `mirrored` tells the designs with
-    ec = 0 that reach the peak at -theta as well, where the derivatives by what points to the side
-    (ec, F_X, g_X) have the other sign.
+    ec = 0 that reach the peak at -theta as well, where the derivatives with respect to what points to the
+    side (ec, F_X, g_X) have the other sign.
     """
 
     key = "peak"

@@ -118,9 +118,9 @@ def to_excel(
     units  such as "mm, deg, rpm": those that an answer in SI units is written in, or that the numbers of a
            plain dict are in; SI units without
 
-    Numbers have 16 digits; NaN is an empty cell, an infinite number the text inf. The file appears whole or
-    not at all. Raises FileExistsError for one that desaxe did not write, unless `overwrite`; ValueError for
-    more points than a sheet has rows.
+    Numbers have 16 digits; NaN is an empty cell, infinity the text inf. The file appears whole or
+    not at all. Raises FileExistsError for a file that desaxe did not write, unless `overwrite`; ValueError
+    for more points than a sheet has rows.
     """
     place = as_path("path", path)
     if place.suffix.lower() != ".xlsx":

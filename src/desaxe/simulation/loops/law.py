@@ -67,7 +67,7 @@ def quantities(angles: Any, law: Any, data: Any, out: Any) -> int:
 
 
 def piece(c: Any, theta: float, omega: float, Y: float) -> Any:
-    """A torque or force, and its derivatives by theta (but for Y), omega and Y."""
+    """A torque or force, and its derivatives with respect to theta (but for Y), omega and Y."""
     if c[0] == CONSTANT:
         return c[1], 0.0, 0.0, 0.0
     if c[0] == KLOSS:
@@ -161,7 +161,7 @@ def pushes(law: Any, rows: Any, slopes: Any) -> int:
 
 
 def guide_at(angles: Any, law: Any, rows: Any, guide: Any) -> int:
-    """The normal force without friction at alpha = 0, its derivatives by alpha and omega, and phi: rows."""
+    """The normal force without friction at alpha = 0, its derivatives, and phi: rows."""
     words: Any = zeros(20, int64)
     words[0], words[1] = address(angles), address(rows[SPEED])
     words[2], words[3], words[8] = address(rows[ASIDE]), address(rows[PUSHED]), 16

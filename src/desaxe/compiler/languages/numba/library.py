@@ -214,7 +214,8 @@ def _values(
 def curve_text(module: Module, name: str, indices: Sequence[int]) -> list[str]:
     """`curve_<name>` of an angle, its sine and cosine, and a design, and `search_<name>` for many designs.
 
-    indices   of the value, its derivative by the angle and further derivatives in what formulas give
+    indices   of the value, its derivative with respect to the angle and further derivatives in what formulas
+    give
 
     They call what `peak_steps.py` of the scenes' exports has.
     """
