@@ -7,6 +7,7 @@ from scipy.interpolate import CubicSpline
 import desaxe as dx
 
 TURN = 2 * np.pi
+FORCES = [-4000.0, -5000.0, -900.0, 0.0, 50.0, -1500.0]
 
 
 @pytest.mark.parametrize("count", [2, 3, 4, 40])
@@ -28,6 +29,21 @@ def test_a_table_repeats_after_its_period_whether_its_end_point_is_given_or_not(
     assert whole == open_end
     assert whole(1.0 + 4 * np.pi) == pytest.approx(whole(1.0))
     assert whole(1.0 + TURN) != pytest.approx(whole(1.0))
+
+
+@pytest.mark.parametrize("first", [-720.0, -360.0, 0.0, 360.0, 720.0])
+def test_a_table_may_begin_in_any_turn(first):
+    """Whole turns before or behind, it is the same cycle; around the angle 0 doubles are too many to walk."""
+    machine = {"ec": 0.003, "AB": 0.045, "BC": 0.14, "omega0": 200.0, "m_slider": 0.5}
+    begin = np.radians(first)
+    angles = np.radians([0.0, 20.0, 90.0, 200.0, 450.0, 700.0])
+    load = dx.over_theta(begin + angles, FORCES, "linear", period="720 deg")
+    result = dx.peak("T_in", F_Y=load, **machine)
+    theta = np.linspace(0.0, 4.0 * np.pi, 20001)
+    force = np.interp((theta - begin) % (4.0 * np.pi), [*angles, 4.0 * np.pi], [*FORCES, -4000.0])
+    torque = np.abs(dx.evaluate("T_in", theta=theta, F_Y=force, **machine))
+    assert result["value"] == pytest.approx(torque.max(), rel=1e-5)
+    assert result["theta"] == pytest.approx(theta[torque.argmax()], abs=1e-3)
 
 
 @pytest.mark.parametrize("kind", ["cubic", "linear", "step"])

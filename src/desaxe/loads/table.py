@@ -53,12 +53,13 @@ class Table:
 
     def first_right(self, x: float) -> float:
         """The smallest double that belongs to the piece right of a knot: whole periods are rounded."""
-        here = self.piece(self.reduced(x + 1e-9))
-        while self.piece(self.reduced(x)) != here:
-            x = nextafter(x, inf)
-        while self.piece(self.reduced(before := nextafter(x, -inf))) == here:
-            x = before
-        return x
+        low, high = x - 1e-9, x + 1e-9
+        here = self.piece(self.reduced(high))
+        if self.piece(self.reduced(x)) == here != self.piece(self.reduced(nextafter(x, -inf))):
+            return x
+        while low < (middle := low + 0.5 * (high - low)) < high:  # next to 0 doubles are too many to walk
+            low, high = (low, middle) if self.piece(self.reduced(middle)) == here else (middle, high)
+        return high
 
     def piece(self, x: float) -> int:
         """The index of the piece at a reduced argument."""

@@ -1,5 +1,7 @@
 """`crossings`: angles against the loop closure at 40 digits, jumps and derivatives against differences."""
 
+import math
+
 import numpy as np
 import pytest
 from mpmath import mp, mpf
@@ -77,12 +79,15 @@ def test_a_jump_of_a_load_is_a_crossing():
         assert result["gradient"][p][k] == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-6)
 
 
-def test_what_touches_the_value_does_not_cross_it():
-    ends = dx.events(**LENGTHS)
-    for value, share in ((ends["Y_outer"], 0.0), (ends["Y_inner"], 1.0)):
-        result = dx.crossings("Y", value=value, **LENGTHS)
-        assert (result["count"], result["status"]) == (0, 0)
-        assert result["share"] == pytest.approx(share, abs=1e-7)
+@pytest.mark.parametrize(("AB", "BC"), [(0.1, 0.3), (0.03, 0.12), (0.05, 0.2), (0.1, 0.25), (0.033, 0.127)])
+@pytest.mark.parametrize("ec", [0.0, 0.01, 0.02])
+def test_what_touches_the_value_does_not_cross_it(AB, BC, ec):
+    """At the dead centres of the closure, to rounding and one unit beside it."""
+    outer, inner = (math.sqrt((BC + way * AB) ** 2 - ec**2) for way in (1, -1))
+    for touched, share in ((outer, 0.0), (inner, 1.0)):
+        for value in (math.nextafter(touched, 0.0), touched, math.nextafter(touched, 1.0)):
+            result = dx.crossings("Y", value=value, ec=ec, AB=AB, BC=BC)
+            assert (result["count"], result["status"], result["share"]) == (0, 0, share)
 
 
 def test_statuses_and_many_designs():

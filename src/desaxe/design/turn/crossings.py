@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...loads.angles import turns_of
 from ...mechanism.catalogue import has, quantity
@@ -21,6 +22,7 @@ from .cycle import MOST_TURNS, Cycle, input_rows
 from .turn import NoCycleError, Turn, turn_of
 
 TOGETHER = 3e-8  # rad: crossings that are nearer are one, or a tangency
+NEAR = 1e-6  # rad: so are those, where what is between them is a difference that is none
 EQUAL = 1e-14  # of the largest value: a difference that is none
 JUMP = 1e-9  # of the largest value: a change at one angle that is a jump
 AT_EDGE = 1e-12  # rad
@@ -128,7 +130,11 @@ def _of_one(cycle: Cycle, name: str, level: float, floor: float = 0.0) -> tuple[
     sampled = one.samples(height)
     roots = one.roots(height)
     roots = np.append(roots, edges[:1]) if np.sign(sampled[0]) * np.sign(sampled[-1]) < 0.0 else roots
-    theta = _odd(np.sort((roots - edges[0]) % cycle.angle), cycle.angle) + edges[0]
+    roots = np.sort((roots - edges[0]) % cycle.angle)
+    gaps = np.diff(roots, append=roots[:1] + cycle.angle)
+    between = np.abs(one.at((roots + 0.5 * gaps) % cycle.angle + edges[0], height))
+    is_close = (gaps < TOGETHER) | ((gaps < NEAR) & (between <= EQUAL * largest))
+    theta = _odd(roots, is_close, cycle.angle) + edges[0]
     ends = one.ends(height)
     jumps = np.roll(ends[:, 1], 1) - ends[:, 0]  # at the start of each panel: before - after
     gap = np.abs(theta[:, None] - edges[:-1])
@@ -139,19 +145,23 @@ def _of_one(cycle: Cycle, name: str, level: float, floor: float = 0.0) -> tuple[
     middle = theta + 0.5 * np.diff(theta, append=theta[:1] + cycle.angle)
     above = one.at((middle - edges[0]) % cycle.angle + edges[0], height) > 0.0
     share = float(np.diff(theta, append=theta[:1] + cycle.angle)[above].sum() / cycle.angle)
-    share = share if theta.size else float(sampled.max() > 0.0)
+    share = share if theta.size else float(sampled[np.abs(sampled).argmax()] > 0.0)
     rising = np.where(above, 1.0, -1.0)
     order = np.argsort(theta % cycle.angle)
     side = np.where(is_jump, rising, 0.0)
     return Crossings((theta % cycle.angle)[order], rising[order], side[order], share), CrossingStatus.OK
 
 
-def _odd(roots: Array, angle: float) -> Array:
-    """One root for each odd number of them that are together, none for an even one: a tangency."""
-    if roots.size > 1 and roots[0] + angle - roots[-1] < TOGETHER:  # around the end of the cycle
-        first = int(np.argmax(np.diff(roots) >= TOGETHER)) + 1 if np.any(np.diff(roots) >= TOGETHER) else 0
-        roots = np.concatenate([roots[first:], roots[:first] + angle])
-    groups = np.split(roots, np.flatnonzero(np.diff(roots) >= TOGETHER) + 1) if roots.size else []
+def _odd(roots: Array, is_close: NDArray[np.bool_], angle: float) -> Array:
+    """One root for each odd number of them that are together, none for an even one: a tangency.
+
+    is_close  that a root and the next one are together, of the last one the first one of the next cycle
+    """
+    if not roots.size:
+        return roots
+    first = int(np.argmin(is_close)) + 1  # behind a gap: no group goes around the end of the cycle
+    roots = np.concatenate([roots[first:], roots[:first] + angle])
+    groups = np.split(roots, np.flatnonzero(~np.roll(is_close, -first)[:-1]) + 1)
     return np.array([group[group.size // 2] for group in groups if group.size % 2])
 
 
