@@ -117,10 +117,12 @@ def test_times_beside_the_angles_have_the_speed():
     motion = [{"theta": a, "omega": w} for a, w in zip(theta, omega, strict=True)]
     data = {"theta [deg]": np.degrees(theta) % 360.0, "t [ms]": 1e3 * t}
     over = {"ec": 0.0, "AB": 0.1, "BC": 0.4}
-    for q in ("V_C", "a_C", "Y"):
+    for q, varied in {"V_C": ["omega"], "a_C": ["omega", "alpha"], "Y": []}.items():
         measured = np.array([float(truth(q, **point, **free)) for point in motion])
         result = dx.fit({**data, q: measured}, over={n: over[n] for n in ("ec", "AB")}, BC=MACHINE["BC"])
         assert result["value"] == pytest.approx({n: MACHINE[n] for n in ("ec", "AB")}, rel=1e-7), q
+        value, _ = result.predict(theta=1.0, **dict.fromkeys(varied, 6.0))[q]
+        assert value == pytest.approx([float(truth(q, theta=1.0, omega=6.0, **free))], rel=1e-6), q
     again = dx.fit({**data, "Y": measured}, over=over, omega0=3.0)  # of which Y needs neither
     assert again["value"] == pytest.approx(MACHINE, rel=1e-9)
     with pytest.raises(TypeError, match="leave omega0 out of over"):

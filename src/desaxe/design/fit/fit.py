@@ -134,10 +134,13 @@ def _with_speeds(
     if speeds or (data.t is None and "omega" not in columns):
         return data, fixed
     omega = columns.pop("omega", None)
-    needs = {q: request((q,), {**inputs, "omega": 1.0}, branch, "standard").inputs for q in columns}
+    needs = {
+        q: request((q,), {"omega": 1.0, "alpha": 1.0, **inputs}, branch, "standard").inputs for q in columns
+    }
     moving = [q for q, names in needs.items() if "omega" in names]
     motion = _motion(data.at, data.t) if data.t is not None and moving else {}
-    motion = {name: one for name, one in motion.items() if name not in inputs}
+    missing = {name for names in needs.values() for name in names} - inputs.keys()
+    motion = {name: one for name, one in motion.items() if name in missing}
     motion |= {"omega": omega} if omega is not None else {}
     known = np.isfinite(sum(motion.values(), np.zeros_like(data.at)))
     columns |= {q: np.where(known, columns[q], np.nan) for q in moving}
