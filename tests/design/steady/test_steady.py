@@ -307,6 +307,17 @@ def test_a_machine_that_stores_enough_needs_no_flywheel():
     assert result["fluctuation"] < 0.5
 
 
+def test_a_crank_without_inertia_needs_some_flywheel():
+    """M_eff vanishes at the dead centres; with next to no flywheel the speed is even."""
+    light = {"AB": 0.05, "BC": 0.2, "ec": 0.01, "m_slider": 4.0, "F_Y": -500.0}
+    result = dx.steady(torque=MOTOR, fluctuation=0.02, **light)
+    assert result["status"] == 0
+    assert 0.0 < result["flywheel_inertia"] < 0.1
+    again = dx.steady(torque=MOTOR, flywheel_inertia=result["flywheel_inertia"], **light)
+    assert again["fluctuation"] == pytest.approx(result["fluctuation"], rel=1e-9)
+    assert again["fluctuation"] <= 0.02
+
+
 def test_motors_of_a_machine_are_in_its_units():
     press = dx.Machine(units="mm, rpm", ec=10, AB=50, BC=200, m_slider=20.0, I_crank=2.0)
     result = press.steady(torque=press.kloss(40.0, 0.15, 1500, gear=12), flywheel_inertia=3.0)

@@ -144,32 +144,41 @@ ROUNDS = 60
 SETTLED = 4e-15  # of the fluctuation
 LEAST = 1e-12  # kg m2
 DOUBLED = 40  # times that a heavier wheel is tried
+LIGHT = 1e-4  # of the first guess: no lighter wheel is tried where there is no steady state without one
+NEAR_END = 1.05  # of the wheel with which the steady states end
 
 
 def with_flywheels(designs: DesignRows, required: Array) -> DesignRows:
     """The designs with the smallest flywheels that keep their required fluctuations."""
-    low = np.zeros(designs.size)
-    there, _ = _fluctuation(designs, low)
-    high = np.where(there <= required, 0.0, _estimate(designs, required))
+    low, high = np.zeros(designs.size), _estimate(designs, required)
+    nothing = vanishing(designs._replace(J=low))  # has inertia at some angle: no motion is searched for
+    at_low, _ = _fluctuation(designs, np.where(nothing, high, low))
+    at_low = np.where(nothing, np.inf, at_low)
+    high = np.where(at_low <= required, 0.0, high)
     for _ in range(DOUBLED):
         there, slope = _fluctuation(designs, high)
         if not (short := there > required).any():
             break
-        low, high = np.where(short, high, low), np.where(short, 4.0 * high, high)
-    J = high.copy()
+        low, at_low = np.where(short, high, low), np.where(short, there, at_low)
+        high = np.where(short, 4.0 * high, high)
+    J, light = high.copy(), LIGHT * high
     for _ in range(ROUNDS):
-        done = (J == 0.0) | (np.abs(there - required) <= SETTLED * required) | (there > 1e300)
+        high, low = np.where(there <= required, J, high), np.where(there > required, J, low)
+        at_low = np.where(there > required, there, at_low)
+        ends = np.isinf(at_low)  # lighter wheels leave no steady state: there is no root
+        near = ends & (high <= np.maximum(light, NEAR_END * low))
+        done = (J == 0.0) | (np.abs(there - required) <= SETTLED * required) | near
         if done.all():
             break
-        high, low = np.where(there <= required, J, high), np.where(there > required, J, low)
         with np.errstate(all="ignore"):  # 1/fluctuation is nearly straight over the inertia
             trial = J + (1.0 / required - 1.0 / there) * there**2 / -slope
-        trial = np.where((trial >= low) & (trial <= high), trial, 0.5 * (low + high))
+        middle = np.where(ends, np.where(low < light, light, np.sqrt(low * high)), 0.5 * (low + high))
+        trial = np.where((trial >= low) & (trial <= high) & ~ends, trial, middle)
         if (np.abs(trial - J)[~done] <= 2e-16 * J[~done]).all():
             break
         J = np.where(done, J, trial)
         there, slope = _fluctuation(designs, J)
-    return designs._replace(J=J)
+    return designs._replace(J=np.where(there <= required, J, high))
 
 
 def _fluctuation(designs: DesignRows, J: Array) -> tuple[Array, Array]:
