@@ -82,6 +82,7 @@ def test_the_files_are_written(result, tmp_path):
     assert sorted(path.name for path in page.parent.iterdir()) == ["accuracy.md", "accuracy.png"]
 
 
+@pytest.mark.thorough
 def test_the_command(monkeypatch, capsys, tmp_path, result):
     asked = []
     monkeypatch.setattr(

@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 import desaxe as dx
 from tests.crankshaft.test_sums import CYLINDER, SHAFTS, crankshaft, truth
 from tests.crankshaft.truth import torque_with_friction
+from tests.effort import first
 
 TORQUE, T_END, SPEED = 60.0, 0.02, 130.0
 STARTS = {"theta0": 0.3, "omega_start": SPEED, "torque": TORQUE}
@@ -111,7 +112,7 @@ KINDS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", first(2, KINDS))
 def test_derivatives_of_a_motion(kind):
     """Differences of motions; with a load that jumps the jumps move with phases."""
     shaft = crankshaft("V").replace(**KINDS[kind])
@@ -150,7 +151,7 @@ def test_motions_that_are_refused(changes, call, message):
 MOTOR = dx.over_omega([0.0, 100.0, 200.0], [120.0, 90.0, -20.0])
 
 
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "jumps"])
+@pytest.mark.parametrize("kind", first(2, [kind for kind in KINDS if kind != "jumps"]))
 def test_the_steady_state_repeats(kind):
     shaft = crankshaft("V").replace(**KINDS[kind])
     steady = shaft.steady(torque=MOTOR)

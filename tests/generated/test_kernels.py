@@ -29,8 +29,8 @@ from tests.effort import cases, first
 
 ROOT = Path(__file__).parents[2]
 NAMES = [group.name for group in GROUPS]
-MAIN = ("motion", "forces", "sensitivities")  # the others compile in the thorough run alone
-EACH = first(3, sorted(NAMES, key=lambda name: name not in MAIN))
+MAIN = ("motion", "sensitivities")  # the others compile in the thorough run alone
+EACH = first(2, sorted(NAMES, key=lambda name: name not in MAIN))
 OUTPUTS = {group.name: group.outputs for group in GROUPS}
 INPUTS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
 

@@ -179,6 +179,7 @@ def moved(draw, top, parameter, place=position):
     return partial - slope * float(by / own)
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled
 def test_the_gradient_moves_with_the_jump():
     checked = 0

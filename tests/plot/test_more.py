@@ -89,6 +89,7 @@ def test_panels_on_given_axes_and_complaints():
         panels(grid, ["Y"])
 
 
+@pytest.mark.thorough
 def test_no_picture_touches_the_global_state():
     code = """
 import sys, tempfile

@@ -75,7 +75,7 @@ def command(capsys):
     return run
 
 
-@pytest.fixture(params=SCENES)
+@pytest.fixture(params=first(6, SCENES))
 def case(request, tmp_path, monkeypatch):
     """The name of a case, the path of its scene, its machine; the scene has two equal peaks of T_in."""
     monkeypatch.chdir(tmp_path)

@@ -54,6 +54,7 @@ def fast(t, theta, omega):
     return 40.0 * np.sin(300.0 * theta)
 
 
+@pytest.mark.thorough
 def test_an_unusual_energy_residual_ends_the_message(monkeypatch):
     monkeypatch.setattr("desaxe.simulation.history.TOLD", 1e-9)
     message = dx.simulate(t_end=1.0, rtol=1e-6, **START | {"torque": fast}, **ISSUE)

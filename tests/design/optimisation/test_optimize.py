@@ -77,6 +77,7 @@ def test_a_kink_between_two_angles():
     assert np.isnan(result["multipliers"]["ec"])
 
 
+@pytest.mark.thorough
 def test_a_kink_that_a_search_reaches_from_one_side():
     """Two peaks of the torque are equal under one side force, by the torque at fixed angles."""
     points = [0.26, 3.16, 3.2, 4.18, 5.25], [1550.0, -1060.0, 180.0, 1220.0, 930.0]
