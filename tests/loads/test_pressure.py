@@ -108,6 +108,7 @@ def test_over_the_slider_s_place(tmp_path):
             dx.over_stroke([0, 0.08], out, back, dead_centre="outer", area=AREA, ambient="1 bar"),
             dx.over_stroke([0, 0.08], *by_hand, dead_centre="outer"),
         ),
+        (dx.over_V([-2, 1], out, bore=BORE, ambient=AMBIENT), dx.over_V([-2, 1], by_hand[0])),
     ]
     path = tmp_path / "indicator.csv"
     path.write_text("Y [mm],out [bar],back [bar]\n90,1,1\n170,9,2\n", encoding="utf-8")

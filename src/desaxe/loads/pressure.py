@@ -18,7 +18,7 @@ BORE = Input("bore", "m", "diameter of the piston", TINY, "a length > 0")
 AMBIENT = Input("ambient", "Pa", "pressure on the other side of the piston", 0.0, "a finite pressure >= 0")
 PISTON = (AREA, BORE, AMBIENT)
 ATMOSPHERE = 1e5  # Pa
-OF_PRESSURES = ("over_theta", "over_Y", "over_stroke")  # calls that have a piston
+OF_PRESSURES = ("over_theta", "over_Y", "over_stroke", "over_V")  # calls that have a piston
 VACUUM, PRESSED = 1e3, 1e4  # Pa: nobody works against a vacuum below the one with pressures above the other
 UNITS = {"bar": 1e5, "kPa": 1e3, "MPa": 1e6, "psi": 6894.757}
 
