@@ -118,7 +118,7 @@ TABLE = [  # a call and what is good for it; what is changed, the error and its 
     ]),
     ((dx.design_map, "stroke"), ROD, [
         ({"BC": None}, TypeError, "design_map: BC is missing"),
-        ({"ec": np.zeros((2, 2))}, ValueError, "ec: a map takes numbers and 1-d arrays"),
+        ({"ec": np.zeros((2, 2))}, ValueError, "ec: a grid takes numbers and 1-d arrays"),
         ({"theta": 0.0}, TypeError, "no input 'theta'"),
     ]),
     ((dx.design_map, "strokes"), ROD, [({}, ValueError, "did you mean 'stroke'")]),

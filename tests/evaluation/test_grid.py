@@ -90,7 +90,11 @@ def test_statics_need_no_motion():
     ("arguments", "error", "words"),
     [
         ({"speed": 3.0}, TypeError, "no input 'speed'"),
-        ({"ec": [[0.0]]}, ValueError, r"ec: a grid takes numbers and 1-d arrays, got the shape \(1, 1\)"),
+        (
+            {"ec": [[0.0]]},
+            ValueError,
+            r"ec: a grid takes numbers and 1-d arrays, got the shape \(1, 1\); evaluate takes any",
+        ),
         ({"omega0": None}, TypeError, "omega0 is missing"),
         ({"BC": [-1.0, -2.0]}, ValueError, "BC: every value is bad"),
     ],

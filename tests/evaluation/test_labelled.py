@@ -93,7 +93,7 @@ def test_a_variable_has_no_coordinates_and_broadcasts_by_position():
 
 
 def test_what_does_not_fit_is_refused():
-    with pytest.raises(ValueError, match=r"theta \('theta',\), ec \('design',\); use grid"):
+    with pytest.raises(ValueError, match=r"theta \('theta',\), ec \('design',\); .*xarray\.broadcast"):
         dx.evaluate("a_C", theta=THETA, ec=EC, out=np.empty((5, 3)), **MACHINE)  # it has no labels
     with pytest.raises(ValueError, match="theta"):
         dx.evaluate("a_C", theta=THETA, ec=0.0 * THETA[1:], **MACHINE)
@@ -177,3 +177,77 @@ def test_an_unknown_input_beside_series_with_an_index_is_named():
     ec = pd.Series([0.0, 0.1], pd.Index(["a", "b"], name="design"))
     with pytest.raises(TypeError, match=r"grid\(\) has no input 'thta'"):
         dx.grid("a_C", thta=1.0, ec=ec, **MACHINE)
+
+
+PLAIN = {"AB": 0.125, "omega0": 157.08}
+BY_POSITION = {  # calls whose arrays broadcast by position: of one shape, and the inputs that they vary
+    "peak": lambda **ab: dx.peak("a_C", **ab, **PLAIN),
+    "a machine's peak": lambda **ab: dx.Machine(**PLAIN).peak("a_C", **ab),
+    "events": lambda **ab: dx.events(AB=0.125, **ab),
+    "feasibility": lambda **ab: dx.feasibility(AB=0.125, **ab),
+    "inverse": lambda **ab: dx.inverse(Y=0.4, AB=0.125, **ab),
+    "crossings": lambda **ab: dx.crossings("V_C", **ab, **PLAIN),
+    "simulate": lambda **ab: dx.simulate(
+        torque=0.0, t_end=0.01, I_crank=1.0, omega_start=10.0, AB=0.125, **ab
+    ),
+    "steady": lambda **ab: dx.steady(torque=dx.kloss(40.0, 0.15, 157.08), I_crank=1.0, AB=0.125, **ab),
+    "quality": lambda **ab: dx.evaluate("a_C", theta=1.0, quality=True, **ab, **PLAIN),
+}
+BY_NAME = {  # those that broadcast by dimensions
+    "evaluate": lambda **ab: dx.evaluate("a_C", theta=1.0, **ab, **PLAIN),
+    "function": dx.function("a_C", ("ec", "BC"), theta=1.0, **PLAIN),
+    "jacobian": lambda **ab: dx.function("a_C", ("ec", "BC"), theta=1.0, **PLAIN).jacobian(**ab),
+    "grid": lambda **ab: dx.grid("a_C", theta=1.0, **ab, **PLAIN),
+    "design_map": lambda **ab: dx.design_map("stroke", **ab, **PLAIN),
+}
+
+
+def designs(labels, kind="DataArray", dim="design", values=(0.35, 0.4, 0.3)):
+    """Values of designs by label."""
+    if kind == "Series":
+        return pd.Series(values, pd.Index(list(labels), name=dim))
+    return xr.DataArray(list(values), {dim: list(labels)}, dim)
+
+
+@pytest.mark.parametrize("kind", ["DataArray", "Series"])
+@pytest.mark.parametrize("name", [*BY_POSITION, *BY_NAME])
+def test_other_labels_are_refused_by_name(name, kind):
+    call, ec = (BY_POSITION | BY_NAME)[name], designs("abc", kind, values=[0.0, 0.05, 0.1])
+    words = r"(ec and BC|BC and ec): their labels differ along (design|their rows), \['[ac]', '[ab]'"
+    for other in ("cab", "xyz"):
+        with pytest.raises(ValueError, match=words if other == "cab" else "their labels differ"):
+            call(ec=ec, BC=designs(other, kind))
+    call(ec=ec, BC=designs("abc", kind))
+
+
+@pytest.mark.parametrize("name", BY_POSITION)
+def test_other_dimensions_are_refused_where_arrays_broadcast_by_position(name):
+    ec, BC = designs("abc", values=[0.0, 0.05, 0.1]), designs("abc", dim="lot")
+    with pytest.raises(ValueError, match=r"(ec \('design',\)|BC \('lot',\)), (ec|BC) .*xarray\.broadcast"):
+        BY_POSITION[name](ec=ec, BC=BC)
+
+
+def test_broadcast_labelled_designs_of_a_peak_are_those_of_each_alone():
+    ec, BC = xr.broadcast(designs("ab", values=[0.0, 0.05]), designs("xy", dim="lot", values=[0.35, 0.4]))
+    alone = [[dx.peak("a_C", ec=e, BC=b, **PLAIN)["value"] for b in (0.35, 0.4)] for e in (0.0, 0.05)]
+    np.testing.assert_array_equal(dx.peak("a_C", ec=ec, BC=BC, **PLAIN)["value"], alone)
+
+
+def test_other_sizes_and_rows_beside_labels_are_refused_by_name():
+    with pytest.raises(ValueError, match="ec and BC: 3 and 2 values along design"):
+        dx.evaluate("a_C", theta=1.0, ec=designs("abc"), BC=designs("ab", values=[0.3, 0.4]), **PLAIN)
+    for call in (dx.evaluate, dx.peak):
+        angle = {"theta": 1.0} if call is dx.evaluate else {}
+        with pytest.raises(ValueError, match="BC and ec: their labels differ along their rows"):
+            call("a_C", ec=designs("abc"), BC=designs("cab", "Series"), **angle, **PLAIN)
+
+
+@pytest.mark.parametrize("kind", ["DataArray", "Series"])
+def test_a_design_map_has_one_axis_for_inputs_of_one_dimension(kind):
+    ec, BC = designs("abc", kind, values=[0.0, 0.05, 0.1]), designs("abc", kind)
+    result = dx.design_map([("absmax", "a_C"), "stroke"], ec=ec, BC=BC, **PLAIN)
+    assert dict(result.sizes) == {"design": 3}
+    assert list(result.design.values) == ["a", "b", "c"]
+    assert result.ec.dims == result.BC.dims == result.stroke.dims == ("design",)
+    alone = [dx.peak("a_C", ec=e, BC=b, **PLAIN)["value"] for e, b in zip(ec.values, BC.values, strict=True)]
+    np.testing.assert_allclose(result.absmax_a_C, alone, rtol=1e-14)

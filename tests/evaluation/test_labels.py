@@ -182,5 +182,5 @@ def test_series_of_different_rows_are_not_paired_by_position():
     theta, ec = pd.Series([0.0, 1.0, 2.0]), pd.Series([0.0, 0.1, 0.2])
     together = dx.evaluate("a_C", theta=theta, ec=ec, **MACHINE)
     np.testing.assert_array_equal(together, dx.evaluate("a_C", theta=theta.values, ec=ec.values, **MACHINE))
-    with pytest.raises(ValueError, match=r"theta and ec: Series of different index; align them"):
+    with pytest.raises(ValueError, match=r"theta and ec: their labels differ along their rows"):
         dx.evaluate("a_C", theta=theta, ec=ec[::-1], **MACHINE)

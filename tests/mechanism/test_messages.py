@@ -137,6 +137,15 @@ def test_slips_of_motors_are_told(message):
     assert [each.filename for each in warned] == [__file__]
 
 
+def test_lengths_of_chunks_are_no_slips_and_hide_none():
+    slips.WARNED.clear()
+    public.LOOKS[0] = 1000
+    machine = {"ec": 0.0, "AB": 0.125, "BC": 0.35, "omega0": 1.0}
+    dx.grid("a_C", theta=[0.0, 1.0], chunks={"theta": 100}, **machine)
+    with pytest.warns(dx.UnitWarning, match='write theta = "100 deg"'):
+        dx.evaluate("a_C", theta=100, **machine)
+
+
 def test_proper_motors_are_no_slips():
     with warnings.catch_warnings():
         warnings.simplefilter("error")

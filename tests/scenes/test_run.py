@@ -534,3 +534,13 @@ def test_missing_zarr(tmp_path, monkeypatch):
         ImportError, match=r"results\.data needs zarr: python -m pip install 'desaxe\[zarr\]'"
     ):
         dx.scene({**SMALL, "results": {"data": "a.zarr"}}).run()
+
+
+def test_no_change_has_no_sign():
+    scene = dx.scene({
+        "mechanism": {"ec": [0.0, 0.05], "AB": 0.125, "BC": 0.35},
+        "motion": {"omega0": 157.08},
+        "peak": [{"quantity": "a_C", "kind": kind, "baseline": {"ec": 0.0}} for kind in ("max", "min")],
+    })  # fmt: skip
+    rows = [line.split() for line in str(scene.run()).splitlines() if line.split()[:1] == ["0"]]
+    assert [row[row.index("%") - 1] for row in rows] == ["0.0", "0.0"]

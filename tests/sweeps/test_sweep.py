@@ -217,6 +217,15 @@ def test_killed_at_any_file_it_goes_on(whole, tmp_path):
     assert not [*root.rglob("*.partial")]
 
 
+def test_an_interrupt_before_the_first_chunk_says_so_too(tmp_path, monkeypatch):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("desaxe.sweeps.sweep.require_disk", interrupt)
+    with pytest.raises(KeyboardInterrupt, match=r"early\.zarr: 0 of 3 chunks are kept"):
+        dx.sweep(NAMES, store=tmp_path / "early.zarr", chunks=CHUNKS, **INPUTS)
+
+
 def test_an_interrupt_says_what_is_kept_and_how_to_go_on(whole, tmp_path):
     root = tmp_path / "stopped.zarr"
 

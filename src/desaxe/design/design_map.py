@@ -7,8 +7,8 @@ import numpy as np
 
 from ..evaluation.arrays import as_array
 from ..evaluation.labels import STATUS_FLAGS, import_xarray, input_attributes, provenance, with_loads
+from ..evaluation.points import outer_arrays, outer_of
 from ..evaluation.reductions.own_measure import OwnMeasure
-from ..loads.resolve import split
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs, with_known_keywords
@@ -31,8 +31,9 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
 
     names        of quantities of a design: "margin", those of `events`, and peaks such as ("absmax", "a_C"),
                  which are called absmax_a_C in the Dataset; one, a list, or none
-    inputs       as in `evaluate`, without theta; each 1-d array is a dimension, in the order given; a load
-                 that varies with the motion is that of all designs
+    inputs       as in `evaluate`, without theta; each 1-d array is a dimension, in the order given, labelled
+                 arrays that share one vary together along it, as in `grid`; a load that varies with the
+                 motion is that of all designs
     derivatives  whether each quantity's exact derivatives come along, as stroke_wrt_ec
 
     `margin`, `status` (0 the crank turns fully, 1 it does not, 2 change point, 4 bad input), `can_turn` and
@@ -48,21 +49,16 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
     check_inputs("design_map", inputs, known)
     one = isinstance(names, (str, tuple)) and bool(names)
     requested: Sequence[Measure] = [checked(name) for name in ([names] if one else names)]
-    numbers, loads = split({n: value for n, value in inputs.items() if value is not None})
-    axes = {n: as_array(n, value, LENGTHS, ("design_map",)) for n, value in numbers.items()}
+    outer = outer_of(("design_map",), inputs, branch, None, always=False)
+    axes, dimensions = outer.axes, outer.dimensions
     for name in LENGTHS:
         if name not in axes:
             as_array(name, None, LENGTHS, ("design_map",))
-    for name, axis in axes.items():
-        if axis.ndim > 1:
-            raise ValueError(f"{name}: a map takes numbers and 1-d arrays, got the shape {axis.shape}")
-    dimensions = [name for name, axis in axes.items() if axis.ndim]
-    shape = tuple(axes[name].size for name in dimensions)
-    planes = np.meshgrid(*(axes[name] for name in dimensions), indexing="ij")
-    grids = {**axes, **dict(zip(dimensions, planes, strict=True))}
+    shape = tuple(outer.sizes[dim] for dim in dimensions)
+    grids = {**axes, **outer_arrays(axes, outer.along, dimensions)}
     designs = {n: np.broadcast_to(grid, shape).reshape(-1) for n, grid in grids.items()}
     variables = _feasible(designs, shape, dimensions)
-    for measure, result in measured(requested, designs | loads, branch).items():
+    for measure, result in measured(requested, {**designs, **outer.loads}, branch).items():
         name, meaning = _name(measure), _meaning(measure)
         rows = {name: (result.value, _about(measure), meaning)}
         for p, slope in result.gradient.items() if derivatives else ():
@@ -75,11 +71,13 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
     import_xarray("design_map")
     with IMPORTS:
         import xarray
-    coordinates = {n: ((n,) if axis.ndim else (), axis, input_attributes(n)) for n, axis in axes.items()}
+    coordinates = {
+        n: ((outer.along[n],) if axis.ndim else (), axis, input_attributes(n)) for n, axis in axes.items()
+    }
     about = provenance(
         [_name(measure) for measure in requested], axes, branch, title="offset slider-crank designs"
     )
-    return with_loads(xarray.Dataset(variables, coordinates, about), loads)
+    return with_loads(xarray.Dataset(variables, {**outer.labels, **coordinates}, about), outer.loads)
 
 
 def _feasible(designs: dict[str, Any], shape: tuple[int, ...], dimensions: list[str]) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..evaluation.evaluate import evaluate
+from ..evaluation.labelled import refuse_other_labels
 from ..mechanism.closed import TURN
 from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
@@ -75,6 +76,7 @@ def inverse(
         raise TypeError("inverse: Y and s both say where the slider is; give one of them")
     at = "Y" if s is None else "s"
     inputs = {at: Y if s is None else s, "ec": ec, "AB": AB, "BC": BC, "V_C": V_C, "a_C": a_C}
+    refuse_other_labels(inputs)
     arrays = {
         name: _input(name, value)
         for name, value in inputs.items()

@@ -53,10 +53,11 @@ def evaluate_arrays(
             others = others or hasattr(value, "dims") or hasattr(value, "iloc")
     if others:
         with IMPORTS:
-            from .labelled import by_dimensions, is_labelled, refuse_other_labels
+            from .labelled import by_dimensions, is_labelled, refuse_differing, refuse_other_labels
 
         labelled = [n for n in call.inputs if out is None and is_labelled(inputs.get(n))]
         if labelled:
+            refuse_differing({name: inputs.get(name) for name in call.inputs})
             labels = {name: inputs[name].copy(data=arrays.pop(name)) for name in labelled}
 
             def run(columns: Mapping[str, Array]) -> dict[str, Array]:

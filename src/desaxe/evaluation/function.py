@@ -122,6 +122,10 @@ class Function:
             raise TypeError(f"function of ({', '.join(self.inputs)}): {len(args)} arguments were given")
         labelled = not PLAIN.issuperset(map(type, args)) and any(hasattr(value, "attrs") for value in args)
         if labelled:
+            with IMPORTS:
+                from .labelled import refuse_differing
+
+            refuse_differing(dict(zip(self.inputs, args, strict=True)))
             pairs = zip(self.inputs, args, strict=True)  # in SI units, from the unit that an array names
             args = tuple([in_si(INPUTS[n], a) if hasattr(a, "attrs") else a for n, a in pairs])
         if out is not None:

@@ -14,9 +14,11 @@ from ..mechanism.closed import TURN
 from ..mechanism.inputs import INPUTS
 from ..mechanism.messages import amount, message_of
 from ..mechanism.read import read_array
+from ..support.shown import shown
 from .labels import attributes, import_xarray
 
 Array = NDArray[Any]
+MOST_SHOWN = 4  # labels in a message
 GAP = 1.5  # steps: a table that lacks no more of a turn is a whole one
 
 
@@ -34,8 +36,8 @@ def by_dimensions(
 ) -> dict[str, Any]:
     """The values by name as DataArrays, with the coordinates of the labelled inputs and units.
 
-    `run` evaluates plain arrays, which broadcast by position. ValueError for labels that differ along a
-    dimension, and for an array without labels beside others of several dimensions.
+    `run` evaluates plain arrays, which broadcast by position. ValueError for an array without labels beside
+    others of several dimensions.
     """
     xarray = import_xarray("labelled arrays")
     several = [name for name, array in others.items() if array.size > 1]
@@ -51,24 +53,57 @@ def by_dimensions(
         whole = [np.broadcast_to(answer[n], shape) for n in names]
         return tuple(whole) if len(whole) > 1 else whole[0]
 
-    outputs = xarray.apply_ufunc(plain, *labelled.values(), join="exact", output_core_dims=[()] * len(names))
+    outputs = xarray.apply_ufunc(
+        plain, *labelled.values(), join="override", output_core_dims=[()] * len(names)
+    )
     result = dict(zip(names, outputs if len(names) > 1 else (outputs,), strict=True))
     return {n: array.rename(n).assign_attrs(attributes(n, state)) for n, array in result.items()}
 
 
 def refuse_other_labels(inputs: Mapping[str, Any]) -> None:
-    """ValueError for labelled arrays of different dimensions or rows, where arrays broadcast by position."""
-    labels = {name: value.dims for name, value in inputs.items() if hasattr(value, "dims") and value.dims}
-    if len(set(labels.values())) > 1:
-        message = ", ".join(f"{name} {dims}" for name, dims in labels.items())
+    """ValueError for labelled arrays of different dimensions or labels where arrays broadcast by position."""
+    varying = {name: value for name, value in inputs.items() if not _is_over_theta(name, value)}
+    dims = {name: value.dims for name, value in varying.items() if hasattr(value, "dims") and value.dims}
+    if len(set(dims.values())) > 1:
+        message = ", ".join(f"{name} {along}" for name, along in dims.items())
         raise ValueError(
-            f"labelled arrays of different dimensions: {message}; use grid, or pass their .values"
+            f"labelled arrays of different dimensions: {message}; here arrays broadcast by position: make "
+            "the dimensions the same, as xarray.broadcast does, or pass the .values"
         )
+    refuse_differing(varying)
+
+
+def refuse_differing(inputs: Mapping[str, Any]) -> None:
+    """ValueError that names two inputs whose sizes or labels differ along a dimension that both have.
+
+    A Series goes beside other Series and labelled arrays of one dimension row by row.
+    """
+    sizes: dict[Any, tuple[str, int]] = {}
+    labels: dict[Any, tuple[str, Any]] = {}
     rows = [(name, value.index) for name, value in inputs.items() if hasattr(value, "iloc")]
+    for name, value in inputs.items():
+        dims = getattr(value, "dims", ())
+        for dim, size in zip(dims, value.shape if dims else (), strict=True):
+            first, expected = sizes.setdefault(dim, (name, size))
+            if size != expected:
+                raise ValueError(f"{first} and {name}: {expected} and {size} values along {dim}")
+        indexes = {dim: index for dim, index in getattr(value, "indexes", {}).items() if dim in dims}
+        for dim, index in indexes.items():
+            _refuse_unequal(*labels.setdefault(dim, (name, index)), name, index, str(dim))
+        if rows and len(dims) == 1:
+            rows += [(name, index) for index in indexes.values()]
     for name, index in rows[1:]:
-        first, expected = rows[0]
-        if len(index) == len(expected) and not index.equals(expected):
-            raise ValueError(f"{first} and {name}: Series of different index; align them or pass .values")
+        _refuse_unequal(*rows[0], name, index, "their rows")
+
+
+def _refuse_unequal(first: str, expected: Any, name: str, index: Any, dim: str) -> None:
+    """ValueError for other labels, as many as expected."""
+    if len(index) == len(expected) and not index.equals(expected):
+        one, other = (shown([*labels[:MOST_SHOWN]]) for labels in (expected, index))
+        raise ValueError(
+            f"{first} and {name}: their labels differ along {dim}, {one} and {other}: align them, for "
+            f"example by {name}.reindex_like({first}), or pass the .values"
+        )
 
 
 # ---- dimensions that several inputs of a grid share ------------------------------------------------------
@@ -95,7 +130,7 @@ def labels_of(inputs: Mapping[str, Any], shared: Mapping[str, str]) -> dict[str,
         xarray.DataArray(value.to_numpy(), {dim: value.index}, (dim,)) if hasattr(value, "iloc") else value
         for value, dim in ((inputs[name], dim) for name, dim in shared.items())
     ]
-    xarray.align(*arrays, join="exact", copy=False)
+    refuse_differing(dict(zip(shared, arrays, strict=True)))
     return {name: label.variable for array in arrays for name, label in array.coords.items() if label.dims}
 
 
@@ -103,14 +138,23 @@ def labels_of(inputs: Mapping[str, Any], shared: Mapping[str, str]) -> dict[str,
 
 
 def loads_of(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Load]]:
-    """The inputs without loads that vary with the motion, and these; an array labelled over theta is one."""
+    """The inputs without loads that vary with the motion, and these; an array labelled over theta is one.
+
+    ValueError for other labelled arrays of different dimensions or labels: the callers broadcast by position.
+    """
+    refuse_other_labels(inputs)
     return split(with_labelled(inputs))
 
 
 def with_labelled(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """The inputs, with labelled arrays over theta replaced by the loads that they stand for."""
-    labelled = [n for n in VARIABLE if getattr(inputs.get(n), "dims", ()) == ("theta",)]
+    labelled = [n for n in VARIABLE if _is_over_theta(n, inputs.get(n))]
     return {**inputs, **{n: labelled_load(n, inputs[n]) for n in labelled}}
+
+
+def _is_over_theta(name: str, value: Any) -> bool:
+    """True for a labelled array that is a load over theta."""
+    return name in VARIABLE and getattr(value, "dims", ()) == ("theta",)
 
 
 def split_axes(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Load]]:
@@ -163,9 +207,9 @@ class SampledLoad(NamedTuple):
 
 def _is_along(name: str, value: Any, inputs: Mapping[str, Any]) -> bool:
     """True for a labelled array over theta; ValueError for another one over a different input."""
-    dimensions = getattr(value, "dims", ())
-    if dimensions == ("theta",) and name in VARIABLE:
+    if _is_over_theta(name, value):
         return True
+    dimensions = getattr(value, "dims", ())
     other = [str(d) for d in dimensions if d != name and d in inputs]
     if other:
         raise ValueError(

@@ -140,7 +140,9 @@ def axis_of(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) 
     """An input of a grid as an array; ValueError for one of several dimensions."""
     array = as_array(name, value, inputs, names)
     if array.ndim > 1:
-        raise ValueError(f"{name}: a grid takes numbers and 1-d arrays, got the shape {array.shape}")
+        raise ValueError(
+            f"{name}: a grid takes numbers and 1-d arrays, got the shape {array.shape}; evaluate takes any"
+        )
     return array
 
 

@@ -30,6 +30,7 @@ LARGE_OFFSET = 5.0  # of crank and rod: a larger one is in millimetres
 BESIDE = ("AB", "BC", "alpha", *FORCES)  # inputs beside which others are a slip
 MOST_LOOKED_AT = 1000  # numbers of a list
 STRONGEST = 1e9  # Pa: of steel, in a rod half as thick as it is long; those of presses carry some 2e7
+NO_VALUES = ("chunks", "reduce")  # mappings by input of numbers that are none of its values
 WARNED: set[Any] = set()  # kinds of slips in calls of functions
 
 
@@ -78,6 +79,8 @@ def _in_si(name: str, value: Any) -> Any:
 def _typed(written: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
     """The numbers that a person typed, by input: of a range both ends, of a list the largest."""
     for name, value in written.items():
+        if name in NO_VALUES:
+            continue
         if isinstance(value, Mapping):
             yield from _typed(value)
             continue

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from ..evaluation.labelled import with_labelled
+from ..evaluation.labelled import refuse_other_labels, with_labelled
 from ..loads.motors import Motor
 from ..mechanism.inputs import TINY
 from ..runtime.request import check_common, check_sliders, with_known_inputs
@@ -125,6 +125,7 @@ def simulate(
     end = scalar("t_end", t_end, "s", TINY, "a finite time > 0")
     instants, angles, rtol = read_times(times, end), read_until(until), read_rtol(rtol)
     starts = {"theta0": theta0, "omega_start": omega_start, "torque": torque}
+    refuse_other_labels({**inputs, **starts})
     by = read_wrt(wrt, {**inputs, **starts, **({} if sliders is None else sliders.numbers())})
     slopes = torque_derivative(torque, derivative) if by else None
     ask = Ask(end, requested, int(branch), rtol, max_steps, deadline, by, slopes, angles)

@@ -54,24 +54,24 @@ def run_sweep(request: SweepRequest) -> "xr.Dataset":
 
 def _stored(sweep: Sweep, root: Path, request: SweepRequest) -> "xr.Dataset":
     """Run a sweep into a store, or resume one that was stopped; the opened Dataset."""
-    with claimed(sweep, root, request.overwrite) as sweep:
-        plan, total = sweep.plan, sweep.chunks
-        left = absent(sweep, root)
-        if left:
-            sweep.require_memory()
-            require_disk(sweep, root, -(-plan.bytes * left // total))
-            if request.tell is not None:
-                variables = f"{len(sweep.template.data_vars)} variables, at most {size_text(plan.bytes)}"
-                chunks = f"{total:,} chunks of {sweep.shape}; {size_text(free_at(root))} free"
-                request.tell(f"{plan.points:,} points, {variables} in {chunks}")
-        try:
+    try:
+        with claimed(sweep, root, request.overwrite) as sweep:
+            plan, total = sweep.plan, sweep.chunks
+            left = absent(sweep, root)
+            if left:
+                sweep.require_memory()
+                require_disk(sweep, root, -(-plan.bytes * left // total))
+                if request.tell is not None:
+                    variables = f"{len(sweep.template.data_vars)} variables, at most {size_text(plan.bytes)}"
+                    chunks = f"{total:,} chunks of {sweep.shape}; {size_text(free_at(root))} free"
+                    request.tell(f"{plan.points:,} points, {variables} in {chunks}")
             for _ in _run(sweep, root, request):
                 pass
-        except KeyboardInterrupt as stopped:
-            kept = f"{total - absent(sweep, root):,} of {total:,} chunks are kept"
-            stopped.args = (f"{printable(root)}: {kept}; the same sweep goes on from there",)
-            raise
-        finish(root)
+            finish(root)
+    except KeyboardInterrupt as stopped:
+        kept = f"{sweep.chunks - absent(sweep, root):,} of {sweep.chunks:,} chunks are kept"
+        stopped.args = (f"{printable(root)}: {kept}; the same sweep goes on from there",)
+        raise
     with IMPORTS:
         import xarray
 

@@ -95,8 +95,10 @@ def events_of_arrays(
         import numpy as np
 
         from ...evaluation.arrays import as_array, broadcast_shape
+        from ...evaluation.labelled import refuse_other_labels
         from ..feasibility.feasibility import only_good
 
+    refuse_other_labels(inputs)
     arrays = {n: as_array(n, value, tuple(inputs), ("events",)) for n, value in inputs.items()}
     shape = broadcast_shape(arrays)
     ec, AB, BC, omega = (np.broadcast_to(a, shape) for a in arrays.values())

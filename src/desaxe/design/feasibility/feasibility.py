@@ -57,7 +57,9 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
     if None in lengths.values():
         with IMPORTS:
             from ...evaluation.arrays import as_array, broadcast_shape
+            from ...evaluation.labelled import refuse_other_labels
 
+        refuse_other_labels(inputs)
         arrays = {n: as_array(n, value, tuple(inputs), ("feasibility",)) for n, value in inputs.items()}
         broadcast_shape(arrays)
         return Answer(of_arrays(*arrays.values()), _units, TurnStatus)

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...evaluation.labelled import refuse_other_labels
 from ...loads.angles import turns_of
 from ...mechanism.inputs import INPUTS, Input
 from ...mechanism.keywords import check_inputs, with_known_keywords
@@ -79,6 +80,7 @@ def steady(
         >>> [round(found[name], 3) for name in ("omega_mean", "fluctuation", "power_mean")]
         [13.09, 0.015, 0.013]
     """
+    refuse_other_labels({**inputs, FLYWHEEL.name: flywheel_inertia, FLUCTUATION.name: fluctuation})
     source, J = source_of(torque), _row(FLYWHEEL, flywheel_inertia)
     more = {name: np.asarray(value, float) for name, value in source.numbers.items()}
     more["flywheel_inertia"] = J

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...evaluation.labelled import refuse_other_labels
 from ...loads.angles import turns_of
 from ...mechanism.catalogue import has, quantity
 from ...mechanism.closed.limits import margin_of
@@ -83,6 +84,7 @@ def crossings(
     if sliders is not None:
         return _of_shaft(name, value, turn_of("crossings", inputs, branch, sliders))
     row = Input("value", quantity(name, inputs.get("omega") is not None).unit, "")
+    refuse_other_labels({**inputs, "value": value})
     rows = input_rows("crossings", inputs, {"value": read_array(row, value)})
     status = np.where(
         rows.bad, CrossingStatus.BAD_INPUT, _status(*(rows.each(rows.numbers[n]) for n in LENGTHS))

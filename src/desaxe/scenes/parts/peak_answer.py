@@ -111,8 +111,8 @@ def _unit(array: Any) -> str:
 
 def _percent(value: float) -> str:
     """A change in percent as short text: a dash for NaN, a power of ten if huge."""
-    form = "+.1f" if abs(value) < HUGE else "+.3g"
-    return "-" if isnan(value) else f"{value:{form}} %"
+    text = f"{value:+.1f}" if abs(value) < HUGE else f"{value:+.3g}"
+    return "-" if isnan(value) else f"{text[1:] if float(text) == 0.0 else text} %"
 
 
 def _remarks(result: PeakResult) -> list[str]:
