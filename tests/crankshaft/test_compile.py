@@ -78,6 +78,13 @@ omega0 = 150
 """
 
 
+def test_a_couple_is_one_in_the_notes(shaft, tmp_path):
+    shaft.compile(tmp_path / "couple.c", ["C_inertia_Y", "a_C[1]"], "c")
+    text = (tmp_path / "couple.h").read_text()
+    assert "C_inertia_Y [N*m]: couple of the inertia forces along Y, about the shaft's middle" in text
+    assert "a_C_1 [m/s^2]: acceleration of the slider, slider 1" in text
+
+
 def test_a_file_from_the_command_line(tmp_path, capsys):
     scene, place = tmp_path / "twin.toml", tmp_path / "twin.js"
     scene.write_text(SCENE)

@@ -250,7 +250,7 @@ def test_calls_of_a_crankshaft_on_the_command_line(tmp_path, capsys):
             words
         )
     for words, message in (
-        (["scene", str(file)], "several sliders are for desaxe.Crankshaft.read"),
+        (["explore", str(file)], "crankshaft: this takes a slider by itself: leave [crankshaft] out"),
         (["events", "--machine", str(file)], "events is of one slider"),
     ):
         assert main(words) != 0
@@ -271,13 +271,14 @@ def test_a_scene_file_of_a_crankshaft_runs(tmp_path, capsys, monkeypatch):
     assert main(["run", str(file), "--report", str(tmp_path / "three.md")]) == 0
     out = capsys.readouterr().out
     assert "Crankshaft with 3 sliders" in out
+    assert "I_shaft = 0 kg m^2" in out
     assert (tmp_path / "three.md").exists()
     rows = [line.split(",") for line in data.read_text().splitlines()[2:]]
     assert [float(row[0]) for row in rows] == [0.0, 45.0, 200.0]
     three = dx.Crankshaft.read(file)
     for theta, torque, *_ in rows:
         one = [
-            m.replace(omega0="3000 rpm").evaluate("T_in", theta=f"{float(theta) - 120 * k - 30} deg")
+            m.evaluate("T_in", theta=f"{float(theta) - 120 * k - 30} deg")
             for k, m in enumerate(three.members)
         ]
         assert float(torque) == pytest.approx(sum(one), rel=1e-9, abs=1e-9)
@@ -288,6 +289,53 @@ def test_a_scene_file_of_a_crankshaft_runs(tmp_path, capsys, monkeypatch):
     file.write_text(f'{scene}[[peak]]\nquantity = "T_in"\n', encoding="utf-8")
     assert main(["run", str(file)]) == 2
     assert "peak: of one slider" in capsys.readouterr().err
+
+
+def test_a_scene_file_of_a_crankshaft_on_a_motor(tmp_path, capsys):
+    file, page = tmp_path / "three.toml", tmp_path / "three.md"
+    text = f'title = "Three on a motor"\n{SCENE}I_shaft = "0.1 kg m2"\n{STEADY}'
+    file.write_text(text, encoding="utf-8")
+    three = dx.Crankshaft.read(file)
+    steady = three.steady(torque=three.kloss(40, 0.15, "150 rad/s"))
+    assert main(["scene", str(file)]) == 0
+    assert "three.toml: OK (outputs: T_in" in capsys.readouterr().out
+    assert main(["run", str(file), "--report", str(page)]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("Three on a motor\n")
+    assert "I_shaft = 0.1 kg m^2" in out
+    rows = out.partition("Steady state\n")[2].split("\n\n")[0].splitlines()
+    row = dict(zip(rows[-3].split(), rows[-1].split(), strict=True))
+    for name in ("omega_mean", "fluctuation", "power_mean"):
+        assert float(row[name]) == pytest.approx(steady[name], rel=1e-5)
+    assert "## Steady state" in page.read_text(encoding="utf-8")
+    file.write_text(f'outputs = ["M_piston"]\n{text}', encoding="utf-8")
+    assert main(["scene", str(file)]) == 2
+    assert "unknown quantity 'M_piston'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        (
+            "phase = [0, 120, 240]",
+            "phase = [0, 2.094, 4.189]",
+            'phase = 4.189 deg, write phase = "4.189 rad"',
+        ),
+        ("spacing = 90", "spacing = 0.09", 'spacing = 0.09 mm, write spacing = "0.09 m"'),
+        ("m_slider = 0.4", "m_slider = 400e3", 'm_slider = 400000 kg, write m_slider = "400000 g"'),
+    ],
+)
+def test_slips_in_a_scene_file_of_a_crankshaft(old, new, words, tmp_path):
+    file = tmp_path / "three.toml"
+    file.write_text(SCENE.replace(old, new), encoding="utf-8")
+    with pytest.warns(dx.UnitWarning, match=words):
+        dx.Crankshaft.read(file)
+
+
+def test_members_have_the_speed_of_a_shaft_that_keeps_it():
+    turning = dx.Crankshaft(ONE.replace(omega0=120.0), phase=[0.0, 1.0])
+    assert turning.members[1]["omega0"] == turning.replace(alpha=0.0).members[1]["omega0"] == 120.0
+    assert "omega0" not in turning.replace(alpha=3.0).members[1]
 
 
 def test_a_crankshaft_is_printed_with_its_speed():

@@ -175,6 +175,14 @@ def test_peaks_are_those_of_samples():
     assert both["value"][1] == pytest.approx(six().peak("M_eff", AB=0.05)["value"], rel=1e-14)
 
 
+def test_a_slope_of_what_cancels_is_0():
+    """The first order of three cranks cancels, and so all of r_crank; the sixth of their rods does not."""
+    three = engine([0, 120, 240], machine=ONE.replace(r_crank=0.01))
+    gradient = three.peak("F_inertia_Y")["gradient"]
+    assert gradient["m_crank"] == gradient["r_crank"] == 0.0
+    assert gradient["m_slider"] > 0.0
+
+
 @pytest.mark.thorough
 @pytest.mark.parametrize("kind", ["absmax", "max", "min"])
 def test_a_peak_of_what_cancels_is_0(kind):

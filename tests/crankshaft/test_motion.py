@@ -166,6 +166,18 @@ def test_the_steady_state_repeats(kind):
         assert motion["theta"][0] == pytest.approx(theta + turn, rel=1e-8)
 
 
+@pytest.mark.parametrize("slip", [0.12, 0.3])
+def test_the_steady_state_of_one_slider_is_that_of_its_machine(slip):
+    """Trial energies where the motor has no torque are no errors."""
+    one = dx.Machine(AB=40, BC=160, ec=0, omega0=900, m_slider=2, mu=0.05, units="mm, deg, rpm")
+    one = one.replace(F_Y=one.over_Y([120, 200], [0, -9000], [0, -1000]))
+    shaft, motor = dx.Crankshaft(one, phase=[0], I_shaft=0.5), one.kloss(120, slip, 1000)
+    steady, same = shaft.steady(torque=motor), one.replace(I_crank=0.5).steady(torque=motor)
+    assert steady["status"] == 0
+    for name in ("omega_mean", "fluctuation", "power_mean", "multiplier"):
+        assert steady[name] == pytest.approx(same[name], rel=1e-9), name
+
+
 @pytest.mark.parametrize(
     ("kind", "parameter", "value"),
     [

@@ -15,7 +15,6 @@ import pytest
 import xarray
 
 import desaxe as dx
-from desaxe.scenes.command import run_scene
 from desaxe.support.progress import progress_bar
 from tests.example_scenes import COMPACTOR, SMALL, changed
 
@@ -275,21 +274,6 @@ def test_a_scene_that_is_run_in_python_shows_its_progress(monkeypatch):
     assert message == ["values", ""]
 
 
-def test_a_run_says_that_it_reads_computes_and_writes(monkeypatch, tmp_path):
-    steps = []
-
-    @contextmanager
-    def bar():
-        yield lambda *step: steps.append(step)
-
-    monkeypatch.setattr("desaxe.scenes.command.progress_bar", bar)
-    source, page = dx.Machine(ec=0.0, AB=0.1, BC=0.3).to_scene(tmp_path / "a.toml", "Y"), tmp_path / "a.html"
-    assert run_scene(str(source), False, str(page)) == 0
-    assert steps[0] == (0, 1, f"reading {source}")
-    assert [what for *_, what in steps[1:]][-2:] == ["writing a.html", ""]
-    assert [done for done, *_ in steps[1:]] == [*range(steps[1][1] + 1)]
-
-
 @pytest.mark.parametrize("text", ["29.5 rad/s", "-20.2 m/s", "-7740 rad/s2", "-994 m/s2"])
 def test_test_cases_of_paper_a(compactor, text):
     """Printed and computed stand side by side, and agree."""
@@ -331,6 +315,17 @@ def test_two_angles_share_a_peak_at_ec_0(compactor):
     for result in (largest, velocity):
         assert result.mirrored.tolist() == [True, *[False] * 9]
     assert "+-20.55" in str(compactor[1])
+
+
+@pytest.mark.parametrize("AB", [0.04, [0.04, 0.03]])
+def test_a_slope_that_vanishes_to_rounding_is_0(AB):
+    """By symmetry an acceleration at ec = 0 and a dead centre does not depend on ec."""
+    peak = {"quantity": "a_C", "kind": "max", "sensitivities": ["ec"]}
+    lengths = {"AB": AB, "BC": 0.16, "ec": 0}
+    report = str(dx.scene({"mechanism": lengths, "motion": {"omega0": 94.0}, "peak": [peak]}).run())
+    slopes = [line.split()[-1 if isinstance(AB, list) else 1] for line in report.splitlines()
+              if line.split()[:1] in (["ec"], ["0.04"])]  # fmt: skip
+    assert slopes == ["0"], report
 
 
 def test_peak_over_two_axes_and_part_of_a_turn():

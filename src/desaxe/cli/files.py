@@ -36,19 +36,21 @@ def _run(options: argparse.Namespace) -> int:
 
 def _run_shaft(options: argparse.Namespace, tolerances: Mapping[str, str]) -> int:
     """Several sliders on one crankshaft."""
-    from ..machine.crankshaft import Crankshaft, content_of_shaft
-    from ..machine.crankshaft_report import run_text
+    if tolerances:
+        raise UsageError("--tolerance: a report of one slider has tolerances; see desaxe tolerance --machine")
+    text = _shaft_of(options.scene).run(options.overwrite, options.report and Path(options.report))
+    print(text)  # last: its reader may be gone
+    return 0
+
+
+def _shaft_of(path: str) -> Any:
+    """The requests of a scene file with [crankshaft]."""
+    from ..machine.crankshaft import content_of_shaft, shaft_of
+    from ..machine.crankshaft_report import requested
     from ..support.toml import read_toml
 
-    shaft, data = Crankshaft.read(options.scene), read_toml(Path(options.scene))
-    theta = content_of_shaft(options.scene)[0].inputs.get("theta", 0.0)
-    text = run_text(shaft, data, theta, options.overwrite)
-    if options.report is not None:  # before the text, whose reader may be gone
-        more = {"tolerances": tolerances, "title": data.get("title", ""), "overwrite": options.overwrite}
-        shaft.report(options.report, data.get("outputs"), **more)
-        text += f"\n\nReport\n  {printable(options.report)}"
-    print(text)
-    return 0
+    content, table = content_of_shaft(path)
+    return requested(shaft_of(content, table), content, read_toml(Path(path)))
 
 
 def _sections() -> dict[str, str]:
@@ -63,9 +65,11 @@ def _scene(options: argparse.Namespace) -> int:
 
         print(json_schema_text(), end="")
         return 0
+    from ..scenes.reading.read import plain_data
     from ..scenes.scene import scene
 
-    outputs = ", ".join(scene(options.scene).outputs)
+    read: Any = _shaft_of if "crankshaft" in plain_data(options.scene) else scene
+    outputs = ", ".join(read(options.scene).outputs)
     print(f"{printable(options.scene)}: OK" + (f" (outputs: {outputs})" if outputs else ""))
     return 0
 

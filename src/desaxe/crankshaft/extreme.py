@@ -10,19 +10,20 @@ from .cycle import ShaftTurn
 
 SIGNS = {"max": (1.0,), "min": (-1.0,), "absmax": (1.0, -1.0)}
 Values = Callable[[Sequence[str], Array, Any], dict[str, Array]]
+Floor = Callable[[str, Array], Array]
 JUMP = 1e-9  # of the largest value: a change at one angle that is a jump
 BESIDE = 1e-13  # of 1 + theta: on one side of an edge, for derivatives
 
 
 def extremes_of(
-    turn_of: Callable[[int], ShaftTurn], values: Values, edges: Array, floor: Array, name: str, kind: str
+    turn_of: Callable[[int], ShaftTurn], values: Values, edges: Array, floor: Floor, name: str, kind: str
 ) -> dict[str, Any]:
     """Values, angles, sides of a jump, gradients and status of crankshafts, as arrays.
 
     turn_of  the turn of one of them, for extremes between panels and sums that cancel
     values   quantities at angles of the crankshafts `row`
     edges    a row for each, NaN in empty places
-    floor    the magnitude of each that is rounding
+    floor    the magnitude that is rounding in a sum of each over angles, the last axis
     """
     panels = resolved(lambda theta, row: values([name], theta, row), edges)
     row, nodes = np.arange(len(edges)), panels.values[name]
@@ -31,7 +32,7 @@ def extremes_of(
     tops = [panels.extreme(nodes, sign) for sign in SIGNS[kind]]
     which = np.argmax([np.abs(one[0]) for one in tops], axis=0)
     top, theta, inside = (np.array(part)[which, row] for part in zip(*tops, strict=True))
-    nothing = known & (np.abs(top) <= floor)  # the sliders cancel, at every angle
+    nothing = known & (np.abs(top) <= floor(name, turn_of(0).samples))  # the sliders cancel, at every angle
     top, theta = (np.where(nothing, least, part) for part, least in ((top, 0.0), (theta, panels.edges[:, 0])))
     by = turn_of(0).slopes_of(name)
     slopes = {n: np.array(slope) for n, slope in values([*by.values()], theta, row).items()}
@@ -48,6 +49,8 @@ def extremes_of(
             side[k], own = _at_edge(turn_of(k), name, shaft, theta[k], top[k], by)
         for n, slope in own.items():
             slopes[n][k] = slope
+    there = np.nan_to_num(theta)[:, None]
+    slopes = {n: np.where(np.abs(slope) <= floor(n, there), 0.0, slope) for n, slope in slopes.items()}
     sign = np.sign(top) if kind == "absmax" else 1.0
     gradient = {p: sign * slopes[n] + 0.0 for p, n in by.items()}
     value = np.abs(top) if kind == "absmax" else top

@@ -84,7 +84,10 @@ class Sliders(SliderSums):
             for k, own in enumerate(each):
                 edges[k, : len(own)] = own
             columns = {n: r[:, None] for n, r in rows.items()}
-            floor = self.floor(name, {**inputs, **columns, "theta": turn.samples})
+
+            def floor(sum_of: str, angles: Any) -> Any:
+                return turn.sliders.floor(sum_of, {**numbers, **columns, "theta": angles})
+
             result = extremes_of(turn_of, values, edges, floor, name, kind)
             return Answer(_shaped(result, shape), partial(units_of_extreme, name), PeakStatus)
 

@@ -30,6 +30,7 @@ from .scenes import inputs_of_content
 
 ANGLES = ("phase", "bank", "firing", "spacing", "position", "I_shaft")
 OF_SHAFT = ("T_in", "F_shaking_X", "F_shaking_Y", "M_shaking")  # to compile
+RESULTS = ("outputs", "reduce", "peak", "check", "picture", "results")  # of a scene
 SAME = 1e-9  # rad: a firing that is at its phase and bank
 
 
@@ -56,7 +57,8 @@ class Crankshaft(Machine):
     C_inertia_X and C_inertia_Y are the couples of F_inertia_X and F_inertia_Y about the middle of the shaft.
     Those of one slider, in its own frame, have its index, "a_C[2]". Derivatives are by an input of all
     ("AB"), of one ("AB[2]"), by "phase[1]" and "bank[1]", with which the firing moves, and "I_shaft".
-    `status` is the worst slider's, `margin` the least.
+    `status` is the worst slider's, `margin` the least. `members` are the sliders as machines, each in its
+    frame from its firing on, with the speed of the shaft if that has no alpha.
 
     Inputs of calls and of `replace` are those of all sliders or, as in `**{"AB[2]": 0.05}`, of one.
     Raises ValueError and TypeError that name the input.
@@ -115,17 +117,17 @@ class Crankshaft(Machine):
         The table has phase, bank, firing, spacing or position, I_shaft as they are given here; the other
         tables are those of one slider. Other results that the file asks for are left out.
         """
-        content, table = content_of_shaft(path)
-        inputs, system, made = inputs_of_content(content)
-        shaft = cls(restored(checked_inputs(inputs), system, {}, made), **table)
+        shaft = shaft_of(*content_of_shaft(path))
         return shaft if units is None else shaft.replace(units=units)
 
     def _fill(self, inputs: dict[str, Any], units: UnitSystem) -> "Crankshaft":
         """Fill a new crankshaft."""
         sliders = inputs["sliders"]
-        members = (Machine(sliders.inputs_of(k), units=None) for k in range(len(sliders.members)))
-        object.__setattr__(self, "members", tuple(one.replace(units=units) for one in members))
         self._set(inputs, units, {}, sliders.definitions)
+        speeds = {n: self.get(n) for n in ("omega0", "omega") if self.get(n) is not None}
+        speeds = {} if np.any(self.get("alpha", 0.0)) else speeds  # at another angle for each slider
+        members = (Machine(sliders.inputs_of(k), **speeds, units=None) for k in range(len(sliders.members)))
+        object.__setattr__(self, "members", tuple(one.replace(units=units) for one in members))
         return self
 
     def replace(self, **inputs: Any) -> "Crankshaft":
@@ -250,6 +252,12 @@ def files_of(
     return generated_of_shaft(shaft["sliders"], speeds, names, path, to, source)
 
 
+def shaft_of(content: Content, table: Mapping[str, Any]) -> Crankshaft:
+    """The crankshaft of the scene of one slider and a table [crankshaft]."""
+    inputs, system, made = inputs_of_content(content)
+    return Crankshaft(restored(checked_inputs(inputs), system, {}, made), **table)
+
+
 def content_of_shaft(path: str | PathLike[str]) -> tuple[Content, dict[str, Any]]:
     """The scene of one slider without its results, and the table [crankshaft] of its file."""
     with IMPORTS:
@@ -265,7 +273,8 @@ def content_of_shaft(path: str | PathLike[str]) -> tuple[Content, dict[str, Any]
         raise SceneError(f"{file}: crankshaft.{wrong}: unknown key; {hint(wrong, ANGLES)}")
     if "phase" not in table:
         raise TypeError(f"{file}: phase is missing in [crankshaft]")
-    return read_scene(data, file.parent, alone=True), table
+    design = {key: value for key, value in data.items() if key not in RESULTS}
+    return read_scene({**design, "outputs": ["stroke"]}, file.parent), table
 
 
 def _restored(inputs: dict[str, Any], units: UnitSystem) -> Crankshaft:

@@ -1,18 +1,33 @@
 """`Crankshaft.report`: its sliders, drive, peaks and balance as one page to hand on."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..evaluation.labels import source
-from ..scenes.document.blocks import Document, Lines, Section, Text, TextTable, cell, image_of
+from ..mechanism.messages import errors_in
+from ..scenes.content import Content, Sink
+from ..scenes.document.blocks import (
+    Document,
+    Lines,
+    Section,
+    Text,
+    TextTable,
+    cell,
+    image_of,
+    with_unit,
+)
 from ..scenes.document.page import require_document, write_document
 from ..scenes.document.render import terminal
+from ..scenes.parts.motor import ROWS, OnMotor
+from ..scenes.scene import compute, steps_of
 from ..scenes.schema import SceneError
 from ..scenes.stores.files import check_place, write
+from ..support.answer import cleaned
 from ..support.files import as_path
 from ..support.shown import printed
 
@@ -34,29 +49,63 @@ def write_report(
     file = as_path("path", path)
     require_document(file, overwrite)
     names = OUTPUTS if outputs is None else (outputs,) if isinstance(outputs, str) else tuple(outputs)
-    origin = Section("Origin", [Lines(source())])
-    return write_document(
-        Document(title or _title(shaft), [*_sections(shaft, names, fluctuation), origin]), file, overwrite
-    )
+    return _write(title or _title(shaft), _sections(shaft, names, fluctuation), file, overwrite)
 
 
-def run_text(shaft: Any, data: Mapping[str, Any], theta: Any, overwrite: bool) -> str:
-    """The report of a scene file with [crankshaft] as text, once its outputs are in [results] data.
+class ShaftScene(NamedTuple):
+    """A scene file with [crankshaft]: the crankshaft, the scene of one slider, and what it asks for."""
 
-    theta  its crank angles [rad]: outputs over them are what the file gets
-    """
+    shaft: Any
+    content: Content
+    title: str
+    outputs: tuple[str, ...]
+    data: Path | None
+
+    def run(self, overwrite: bool, page: Path | None = None) -> str:
+        """The report as text once outputs, and steady states, are in [results] data; and the page of it."""
+        if self.data is not None:
+            check_place(self.data, overwrite)
+        if page is not None:
+            require_document(page, overwrite)
+        units: Any = self.content.units
+        fluctuation: Any = 0.03  # that of `Crankshaft.report`
+        requests = [self._on_shaft(one) for one in self.content.of("steady")]
+        content = replace(self.content, requests=tuple(requests))
+        with errors_in(units):
+            run = compute(content, Sink(steps_of(content)))
+        for one in self.content.of("steady"):
+            fluctuation = one.fixed.get("fluctuation", fluctuation)
+        sections = [*_sections(self.shaft, self.outputs, fluctuation), *run.blocks(content, units)]
+        files: list[Path] = []
+        if self.data is not None:
+            theta = self.shaft.units.of("theta").shown(np.asarray(content.inputs.get("theta", 0.0), float))
+            groups = dict(zip(content.groups, (one.dataset for one in run.answers), strict=True))
+            files += write(self.data, self.shaft.grid(list(self.outputs), theta=theta), groups, overwrite)
+        if page is not None:
+            files.append(_write(self.title, sections, page, overwrite))
+        written = [Section("Written", [Text(str(file)) for file in files])] if files else []
+        return terminal(self.title, [*sections, *written])
+
+    def _on_shaft(self, one: OnMotor) -> OnMotor:
+        """Steady states of the shaft, which has all inputs but those of the flywheel, on a motor."""
+        fixed = {n: value for n, value in one.fixed.items() if n in (*ROWS, "omega0")}
+        return replace(one, fixed=fixed, sliders=self.shaft["sliders"])
+
+
+def requested(shaft: Any, content: Content, data: Mapping[str, Any]) -> ShaftScene:
+    """The requests of a scene file with [crankshaft]; SceneError for those of one slider."""
     wrong = next((key for key in OF_ONE if data.get(key)), None)
     if wrong is not None:
         raise SceneError(f"{wrong}: of one slider; a crankshaft has outputs, and data in [results]")
-    names, results = tuple(data.get("outputs") or OUTPUTS), data.get("results", {})
-    files: list[Path] = []
-    if "data" in results:
-        path = Path(results["data"])
-        check_place(path, overwrite)
-        angles = shaft.units.of("theta").shown(np.asarray(theta, float))
-        files = write(path, shaft.grid(list(names), theta=angles), {}, overwrite)
-    written = [Section("Written", [Text(str(file)) for file in files])] if files else []
-    return terminal(data.get("title") or _title(shaft), [*_sections(shaft, names, 0.03), *written])
+    names, file = tuple(data.get("outputs") or OUTPUTS), data.get("results", {}).get("data")
+    shaft.evaluate(list(names), theta=0.0)  # ValueError for a name that is none
+    title = data.get("title") or _title(shaft)
+    return ShaftScene(shaft, content, title, names, None if file is None else Path(file))
+
+
+def _write(title: str, sections: Sequence[Section], file: Path, overwrite: bool) -> Path:
+    """Write a page of sections; its path."""
+    return write_document(Document(title, [*sections, Section("Origin", [Lines(source())])]), file, overwrite)
 
 
 def _title(shaft: Any) -> str:
@@ -82,8 +131,9 @@ def _sliders(shaft: Any) -> Section:
         for k, member in enumerate(members)
     ]
     angles = TextTable(("slider", *heads), rows, ("", *(_unit(shaft, n) for n in heads)))
+    inertia = with_unit(shaft.units, "I_shaft", shaft["sliders"].I_shaft)
     alike = [one for k, one in enumerate(shaft.members) if one not in shaft.members[:k]]
-    return Section("Sliders", [angles, *(Lines(repr(one)) for one in alike)])
+    return Section("Sliders", [angles, Text(f"I_shaft = {inertia}"), *(Lines(repr(one)) for one in alike)])
 
 
 def _drive(shaft: Any, fluctuation: float) -> Section:
@@ -99,7 +149,7 @@ def _peaks(shaft: Any, names: Sequence[str]) -> Section:
     for name in names:
         top, unit, angle = shaft.peak(name), _unit(shaft, name), _unit(shaft, "theta")
         rows = [(name, cell(top["value"]), unit), ("at theta", cell(top["theta"]), angle)]
-        for p, slope in top["gradient"].items():
+        for p, slope in cleaned(top["gradient"], top.units["gradient"]).items():
             rows.append((f"by {p}", cell(slope), printed(shaft.units.of(name).per([shaft.units.of(p)]).unit)))
         tables.append(TextTable(("largest magnitude", "value", "unit"), rows))
     return Section("Peaks", tables)

@@ -23,7 +23,8 @@ from .quantity_units import SI, UnitSystem
 from .ranges import Between, PlusMinus
 from .read import number_of
 
-LINKS, SHORTEST = ("AB", "BC"), 5e-4  # m: shorter ones are in metres where another unit is meant
+SPANS, SHORTEST = ("AB", "BC", "spacing"), 5e-4  # m: shorter ones are in metres where another unit is meant
+PHASES = ("phase", "bank", "firing")  # whose steps are of a turn
 WEAKEST = 0.1  # m/s^2: a gravity below is in m/s^2 where another unit is meant
 SMALL_OFFSET = 5e-4  # of the crank: no smaller one is meant to be one
 LARGE_OFFSET = 5.0  # of crank and rod: a larger one is in millimetres
@@ -147,7 +148,9 @@ def _slip(name: str, value: float, units: UnitSystem, inputs: Mapping[str, Any])
     wrong = kind.most < si <= kind.beyond
     if kind is TURNS:
         wrong = wrong and conversion.unit == "rad" and _is_in_degrees(si) and not inputs.get("alpha")
-    in_si = conversion.si != 1 and ((base in LINKS and si < SHORTEST) or (kind is GRAVITY and si < WEAKEST))
+    if base in PHASES and conversion.unit == "deg" and _is_in_radians(abs(value)):
+        return Slip("radians", f'{name} = {value:.6g} deg, write {name} = "{value:.6g} rad"')
+    in_si = conversion.si != 1 and ((base in SPANS and si < SHORTEST) or (kind is GRAVITY and si < WEAKEST))
     if not wrong and not in_si:
         return None
     remedy = '"{number:.6g} m"' if in_si and kind is SIZE else kind.remedy
@@ -176,3 +179,10 @@ def _is_in_degrees(angle: float) -> bool:
     """True for whole and half degrees; a multiple of 15 degrees in radians, such as pi/6, is none."""
     share = angle / (pi / 12.0)
     return (2.0 * angle).is_integer() and not isclose(share, round(share), rel_tol=1e-12)
+
+
+def _is_in_radians(angle: float) -> bool:
+    """True for a multiple of 15 degrees, from 30 on, in radians of three digits or more."""
+    share = angle / (pi / 12.0)
+    near = abs(share - round(share)) * (pi / 12.0) < 1e-3 * max(angle, 1.0)
+    return near and 2 <= round(share) <= 48 and not (20.0 * angle).is_integer()

@@ -200,6 +200,12 @@ SCENE = _table(
 )  # fmt: skip
 
 
+ONE_SLIDER = (
+    "crankshaft: this takes a slider by itself: leave [crankshaft] out of the file. Several sliders are for "
+    "desaxe.Crankshaft.read, `desaxe run`, `desaxe scene`, `desaxe compile` and calls with --machine"
+)
+
+
 def json_schema_text() -> str:
     """The JSON schema as the text of a file: what editors complete and check while a scene is written."""
     return json.dumps(json_schema(), indent=2) + "\n"
@@ -276,9 +282,9 @@ def _wrong_key(value: Mapping[str, Any], rule: Rule, key: str) -> str | None:
     for name in value:
         if name not in names:
             home = INPUTS[name].section if name in INPUTS else ""
-            allowed = f"{name} belongs in [{home}]" if home else hint(str(name), names)
             if _dotted(key, name) == "crankshaft":
-                allowed = "several sliders are for desaxe.Crankshaft.read, `desaxe run` and `desaxe compile`"
+                return ONE_SLIDER
+            allowed = f"{name} belongs in [{home}]" if home else hint(str(name), names)
             return f"{_dotted(key, name)} = {shown(value[name])}: unknown key; {allowed}"
     for name in rule["required"]:
         if name not in value:

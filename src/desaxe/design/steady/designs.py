@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...evaluation.arrays import are_good
 from ...evaluation.evaluate import evaluate
 from ...loads.along_motion import OfMotion, speeds_of
 from ...loads.angles import meeting_angles
@@ -111,6 +112,12 @@ class DesignRows(NamedTuple):
         present = {n: v for n, v in inputs.items() if v is not None}
         result = evaluate(list(names), theta=self.theta(x), branch=self.branch, **present)
         return {name: np.broadcast_to(result[name], x.shape) for name in names}
+
+    def at_state(self, names: Sequence[str], x: Array, omega: Array, alpha: Array) -> dict[str, Array]:
+        """Quantities by speed and acceleration, NaN where the motor has no torque at a trial energy."""
+        known = are_good("omega", omega) & are_good("alpha", alpha)
+        state = {n: np.where(known, v, 0.0) for n, v in {"omega": omega, "alpha": alpha}.items()}
+        return {n: np.where(known, v, np.nan) for n, v in self.values(names, x, **state).items()}
 
     @property
     def cycle(self) -> Cycle:
@@ -250,7 +257,7 @@ def _rate_by_state(designs: DesignRows, course: Course, E: Array) -> Rate:
         torque, by_omega = designs.torque(course["theta"], omega)
         alpha = (torque - course["load"] - 0.5 * slope * omega**2) / inertia
         for _ in range(SIDES * len(designs.turn.own)):  # linear but where a guide changes sides
-            at = designs.values(names, x, omega=omega, alpha=alpha)
+            at = designs.at_state(names, x, omega, alpha)
             mass = at["T_in_wrt_alpha"] + J
             change = (torque - at["T_in"] - J * alpha) / mass
             alpha = alpha + change
@@ -272,5 +279,5 @@ def kinks_of(designs: DesignRows, course: Course, here: Rate, x: Array) -> list[
     marks = {f"V_C[{k}]": speeds_of(own.loads.values()) for k, own in enumerate(designs.turn.own)}
     marks |= {f"N_C[{k}]": [0.0] for k, own in enumerate(designs.turn.own) if own.has_friction}
     names = [name for name, values in marks.items() if values]
-    at = designs.values(names, x, omega=here.omega, alpha=alpha)
+    at = designs.at_state(names, x, here.omega, alpha)
     return [at[name] - value for name in names for value in marks[name]]

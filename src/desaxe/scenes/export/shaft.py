@@ -15,6 +15,7 @@ from ...compiler.operations import Content as TableContent
 from ...compiler.passes.guard import guard_inputs
 from ...compiler.passes.pipeline import optimise
 from ...compiler.program import Argument, Line, Note, Program, TableName, tables_in, validate
+from ...crankshaft.sliders import described
 from ...crankshaft.sums import BARE, FACTS, SHAFT, TINY, SliderSums
 from ...loads.lines import tables_of
 from ...loads.resolve import split
@@ -89,15 +90,12 @@ class _Writer:
     def notes(self, name: str) -> tuple[str, str, str]:
         """Unit, meaning and source of a quantity."""
         plain = re.sub(r"\[\d+\]", "", name)
-        # Of the same unit and meaning, but for the words of what they are by.
+        # From the same source, but for the words of what they are by.
         known = {"C_inertia": "F_inertia", "_wrt_phase": "_wrt_theta", "_wrt_bank": "_wrt_theta"}
         for own, like in {**known, "_wrt_I_shaft": "_wrt_I_crank"}.items():
             plain = plain.replace(own, like)
-        row = quantity(plain, not self.law)
-        unit = f"{row.unit}*m" if name.startswith("C_inertia") else row.unit
-        base, by = parts(name)
-        meaning = f"derivative of {base} with respect to {', '.join(by)}" if by else row.meaning
-        return unit, meaning, row.source
+        row, about = quantity(plain, not self.law), described(name)
+        return about.get("units", row.unit), about["long_name"], row.source
 
     def guarded(self, program: Program) -> Program:
         """The program with bad arguments as NaN."""

@@ -51,6 +51,7 @@ class OnMotor:
     axes: dict[str, tuple[float, ...]]
     fixed: dict[str, Value]
     seeks: bool  # the flywheel for a fluctuation
+    sliders: Any = None  # of a crankshaft, in place of the inputs of one
 
     def plan(self, content: Content) -> RequestPlan:
         """A periodic motion for each design."""
@@ -64,7 +65,8 @@ class OnMotor:
         sink.steps.next("steady state")
         arrays = np.meshgrid(*(np.asarray(v) for v in self.axes.values()), indexing="ij") if self.axes else []
         inputs: dict[str, Any] = {**self.fixed, **dict(zip(self.axes, arrays, strict=True))}
-        result = steady(torque=self.torque, branch=content.branch, **inputs)
+        of = {"branch": content.branch} if self.sliders is None else {"sliders": self.sliders}
+        result = steady(torque=self.torque, **of, **inputs)
         names = [*NUMBERS, "flywheel_inertia", "status"]
         values = {n: (result[n], {"units": UNITS.get(n, "1"), "long_name": MEANINGS[n]}) for n in names}
         about = {"torque": repr(self.torque)}

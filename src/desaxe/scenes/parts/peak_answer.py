@@ -13,6 +13,7 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
 from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import PeakStatus
+from ...support.answer import cleaned
 from ...support.shown import printed
 from ...sweeps.peak_step import WORDS
 from ..content import RequestAnswer
@@ -21,6 +22,7 @@ from ..document.blocks import ROWS, Block, Section, Text, TextTable, cell, thinn
 SIDEWAYS = ("ec", "F_X", "g_X")  # change sign where the mechanism is mirrored at the Y axis
 HUGE = 1e6  # percent: more is written as a power of ten
 SYMBOLS = {"absmax": "|{}|", "max": "max {}", "min": "min {}"}
+WRT = "value_wrt_"
 SIDE = "side: of a jump of a load, from which this is the limit: -1 smaller theta, +1 larger theta"
 MIRRORED = "+-: at ec = 0 the peak is at theta and at -theta; such a slope is + at one and - at the other"
 
@@ -66,7 +68,7 @@ def _designs(result: PeakResult, units: UnitSystem) -> TextTable:
     one, dataset = result.peak, result.dataset
     angle = units.of("theta").unit
     scale = degrees(1.0) if angle == "rad" else 1.0
-    slopes = [p for p in one.sensitivities if one.axes and f"value_wrt_{p}" in dataset]
+    slopes = [p for p in one.sensitivities if one.axes and f"{WRT}{p}" in dataset]
     has_sides, is_based = bool(dataset["side"].values.any()), "increase" in dataset
     heads = [*one.axes, SYMBOLS[one.kind].format(one.quantity), "at theta", *["side"] * has_sides]
     heads += [f"over {_design(one.at_baseline, units)}"] * is_based + [f"d/d({p})" for p in slopes]
@@ -79,28 +81,30 @@ def _designs(result: PeakResult, units: UnitSystem) -> TextTable:
         row += [cell(at["value"]), cell(scale * at["theta"])]
         row += [f"{at['side']:+d}".replace("+0", "0")] * has_sides
         row += [_percent(float(dataset["increase"].values[index]))] if is_based else []
-        rows.append([*row, *(_slope(result, p, index) for p in slopes)])
+        values = _slopes(result, index, units) if slopes else {}
+        rows.append([*row, *(values[p] for p in slopes)])
     return TextTable(heads, rows, units_of)
 
 
 def _gradient(result: PeakResult, units: UnitSystem) -> list[Block]:
     """The whole gradient of one design, a row for each parameter."""
-    names = [str(n).removeprefix("value_wrt_") for n in result.dataset if str(n).startswith("value_wrt_")]
-    rows = [(p, _slope(result, p, ()), _slope_unit(result, p, units)) for p in names]
+    rows = [(p, slope, _slope_unit(result, p, units)) for p, slope in _slopes(result, (), units).items()]
     return [TextTable(("derivative by", "value", "unit"), rows)] if rows else []
 
 
-def _slope(result: PeakResult, parameter: str, index: tuple[int, ...]) -> str:
-    """A sensitivity; of either sign by what points to the side where two angles share the peak."""
-    value = float(result.dataset[f"value_wrt_{parameter}"].values[index])
-    is_shared = value and parameter in SIDEWAYS and result.mirrored[index]
-    return f"+-{cell(abs(value))}" if is_shared else cell(value)
+def _slopes(result: PeakResult, index: tuple[int, ...], units: UnitSystem) -> dict[str, str]:
+    """The slopes of a design; of either sign by what points to the side where two angles share the peak."""
+    columns = {str(n).removeprefix(WRT): c for n, c in result.dataset.items() if str(n).startswith(WRT)}
+    gradient = {p: float(column.values[index]) for p, column in columns.items()}
+    slopes = cleaned(gradient, {p: _slope_unit(result, p, units) for p in columns})
+    shared = {p for p in SIDEWAYS if slopes.get(p) and result.mirrored[index]}
+    return {p: f"+-{cell(abs(v))}" if p in shared else cell(v) for p, v in slopes.items()}
 
 
 def _slope_unit(result: PeakResult, parameter: str, units: UnitSystem) -> str:
     """The unit of a slope: of one with respect to a mass or an inertia that of the value, divided."""
     if not INPUTS[parameter].unit.startswith("kg"):
-        return _unit(result.dataset[f"value_wrt_{parameter}"])
+        return _unit(result.dataset[WRT + parameter])
     divisor = printed(units.of(parameter).unit)
     return f"{_unit(result.dataset['value'])}/{f'({divisor})' if ' ' in divisor else divisor}"
 
