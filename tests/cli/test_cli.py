@@ -246,6 +246,24 @@ def test_derive_hands_its_options_on(monkeypatch):
     assert given == [["--check", "-o", "x"]]
 
 
+INTERRUPTED = """
+import sys
+
+class Finder:
+    def find_spec(self, name, *_):
+        if name == "desaxe.cli.parser":
+            raise KeyboardInterrupt
+
+sys.meta_path.insert(0, Finder())
+import desaxe.cli
+"""
+
+
+def test_interruption_while_the_command_starts_is_no_traceback():
+    result = subprocess.run([sys.executable, "-c", INTERRUPTED], check=False, capture_output=True, text=True)
+    assert (result.returncode, result.stderr) == (130, "desaxe: interrupted\n")
+
+
 @pytest.mark.parametrize(
     ("stopped", "code", "line"),
     [

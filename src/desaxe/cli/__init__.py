@@ -9,4 +9,10 @@ files    `desaxe run`, `scene`, `sweep`, `explain`, `compile`, `explore`, `deriv
 doctor   `desaxe doctor`: this installation, its values beside frozen truths
 """
 
-from .command import main as main
+import sys
+
+try:
+    from .command import main as main
+except KeyboardInterrupt:  # before the command could say so itself
+    print("desaxe: interrupted", file=sys.stderr)
+    sys.exit(130)

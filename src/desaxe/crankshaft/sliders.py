@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..evaluation.labelled import refuse_other_labels
 from ..evaluation.labels import attributes, input_attributes, labelled
 from ..evaluation.points import ALWAYS
 from ..evaluation.reductions.argument import (
@@ -178,6 +179,7 @@ def described(name: str) -> dict[str, Any]:
 
 def _rows(inputs: Mapping[str, Any]) -> tuple[tuple[int, ...], dict[str, Any]]:
     """The shape of the inputs that are arrays, and these as rows of it."""
+    refuse_other_labels(inputs)
     arrays = {n: np.asarray(v) for n, v in inputs.items() if np.ndim(v) and not callable(v)}
     shape = np.broadcast_shapes(*(a.shape for a in arrays.values()))
     return shape, {n: np.broadcast_to(a, shape).ravel() for n, a in arrays.items()}
