@@ -256,4 +256,4 @@ def test_a_design_map_has_one_axis_for_inputs_of_one_dimension(kind):
 def test_other_labels_of_a_shaft_are_refused_by_name():
     shaft = dx.Crankshaft([dx.Machine(ec=0.0, AB=0.125, BC=0.35, m_slider=1.0)] * 2, phase=[0.0, 3.0])
     with pytest.raises(ValueError, match=r"(omega0 and alpha|alpha and omega0): their labels differ"):
-        shaft.peak("F_Y_shaking", omega0=designs("abc"), alpha=designs("cab"))
+        shaft.peak("F_shaking_Y", omega0=designs("abc"), alpha=designs("cab"))
