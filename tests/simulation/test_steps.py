@@ -80,3 +80,53 @@ def test_a_usual_energy_residual_is_not_told():
     swings = dx.simulate(t_end=0.1, theta0=np.pi - 1e-6, rtol=1e-13, torque=0.0, **light)
     assert swings["energy_residual"] > 1e-6
     assert "energy" not in swings["message"]  # nearly at rest: rounding of m g Y, not of what moves
+
+
+PUSH, PUSHED = 100.0, (0.300171, 0.300171 + 1e-4)
+WHEEL = {"ec": 0.02, "AB": 0.1, "BC": 0.3, "I_crank": 1.0, "t_end": 1.0}
+HELD = {**WHEEL, "m_slider": 1.0, "mu": 0.3, "F_X": 5.0, "F_Y": -0.1}
+
+
+def push(t):
+    return PUSH * (PUSHED[0] <= t < PUSHED[1])
+
+
+@pytest.mark.parametrize("torque", [push, lambda t: PUSH * (PUSHED[0] < t <= PUSHED[1])])
+@pytest.mark.parametrize("knots", [PUSHED, [PUSHED[1], 0.0, *PUSHED, np.nextafter(1.0, 0.0), 3.0]])
+def test_a_brief_push_between_knots(torque, knots):
+    """A free wheel by momentum, one and many, and its derivatives by the moment of inertia."""
+    length = PUSHED[1] - PUSHED[0]
+    speed, angle = PUSH * length, PUSH * length * (1.0 - PUSHED[0] - 0.5 * length)
+    for more in ({}, {"wrt": "I_crank", "derivative": lambda t, theta, omega: (0.0, 0.0)}):
+        result = dx.simulate(torque=torque, knots=knots, **more, **WHEEL)
+        assert result["status"] == 0
+        for name, value in (("omega", speed), ("theta", angle)):
+            assert result[name][-1] == pytest.approx(value, rel=1e-10)
+            if more:
+                assert result[f"{name}_wrt_I_crank"][-1] == pytest.approx(-value, rel=1e-9)
+    several = dx.simulate(torque=torque, knots=knots, **{**WHEEL, "I_crank": [1.0, 4.0]})
+    assert several["omega"][:, -1] == pytest.approx([speed, speed / 4.0], rel=1e-10)
+
+
+@pytest.mark.parametrize("size", [1e-5, 200.0])
+@pytest.mark.parametrize("omega_start", [0.0, 2.0])
+def test_a_brief_push_against_friction(size, omega_start):
+    """By three motions under constant torques, one after the other; a weak push moves nothing at rest."""
+    state = {"theta0": 1.0, "omega_start": omega_start}
+    result = dx.simulate(torque=lambda t: size * push(t), knots=PUSHED, times=[1.0], **state, **HELD)
+    for torque, length in ((0.0, PUSHED[0]), (size * PUSH, PUSHED[1] - PUSHED[0]), (0.0, 1.0 - PUSHED[1])):
+        part = dx.simulate(torque=torque, **{**HELD, "t_end": length}, **state)
+        rests = part["status"] == 1
+        state = {"theta0": part["theta"][-1], "omega_start": 0.0 if rests else part["omega"][-1]}
+    assert result["theta"][-1] == pytest.approx(state["theta0"], rel=1e-9)
+    assert result["omega"][-1] == pytest.approx(state["omega_start"], rel=1e-9, abs=1e-12)
+    away = [event.t for event in result["events"] if event.kind == "break-away"]
+    assert away == ([PUSHED[0]] if size > 1.0 and not omega_start else [])
+    if size < 1.0 and not omega_start:
+        assert result["message"].endswith("at rest from t = 0 s on")
+
+
+@pytest.mark.parametrize("knots", [-1.0, [0.1, np.nan], "now"])
+def test_knots_are_instants(knots):
+    with pytest.raises((TypeError, ValueError), match="knots"):
+        dx.simulate(torque=push, knots=knots, **WHEEL)

@@ -175,6 +175,14 @@ def read_times(times: Any, t_end: float) -> Any:
     return array
 
 
+def read_knots(knots: Any) -> tuple[float, ...]:
+    """The instants at which a torque or a load changes at once."""
+    if knots is None:
+        return ()
+    several = knots if isinstance(knots, (list, tuple, np.ndarray)) else [knots]
+    return tuple(scalar("knots", t, "s", 0.0, "a finite time >= 0") for t in several)
+
+
 def read_until(until: Any) -> tuple[float, ...]:
     """The crank angles that end the motion."""
     if until is None:

@@ -56,6 +56,7 @@ class Ask(NamedTuple):
     wrt: tuple[str, ...]
     derivative: TorqueDerivative | None
     until: tuple[float, ...]
+    knots: tuple[float, ...]
 
 
 class March:
@@ -72,7 +73,7 @@ class March:
         self.numbers[[at.THETA0, at.OMEGA_START]] = start
         self.numbers[at.PROBE] = self.t_end / march.PROBES if self.law.timed else 0.0
         self.sums = np.zeros(march.SUMS)
-        self.y, self.clock, self.scales = np.zeros(3), np.zeros(7), np.array([ask.rtol, 0.0, 0.0])
+        self.y, self.clock, self.scales = np.zeros(3), np.zeros(8), np.array([ask.rtol, 0.0, 0.0])
         self.clock[[panels.T_END, panels.SHARP, panels.LEFT]] = self.t_end, SHARPEST, 1.0
         self.cutting = [mark for mark in self.marks if self._cuts(mark)]
         kinks = np.array([(m.angle, m.every or inf, m.status) for m in self.cutting]).reshape(1, -1, 3)
@@ -119,11 +120,21 @@ class March:
                 self.numbers,
             )
             self._kept.append(memory)
+        self._break_away()
         passed, too_many = passages(self.model, self.marks, self.record)
         if too_many:
             self.message += f"; events list the first {MOST_PASSAGES} passages of each dead centre"
         self.events = sorted([*passed, *self.events], key=lambda event: event.t)
         return self
+
+    def _break_away(self) -> None:
+        """Record where the crank leaves its rest: a panel that rests ends, and the next one does not rest."""
+        rests, heads = self.record.rests, self.record.heads
+        for k in np.flatnonzero(rests & ~np.append(rests[1:], False)).tolist():
+            start, stop = heads[k, [0, 6]].tolist()
+            if start < stop < self.t_end and not (self.status == REST and k == rests.size - 1):
+                angle = float(self.model.coordinate.theta(heads[k, 3]))
+                self.events.append(Event("break-away", stop, angle, 0.0))
 
     # ---- panels -----------------------------------------------------------------------------
 
@@ -140,15 +151,12 @@ class March:
             for name in RECORDED:
                 memory[name][0] = self._kept[-1][name][-1]
         self.law.error = None
+        march.pause(self.clock, self.ask.knots, 0)
         code = run(single, work=PANELS, **memory, **self._arrays)
         made = {name: memory[name][1 : 1 + int(count[0])] for name in RECORDED}
         self.steps += len(made["heads"])
         if len(made["heads"]):
             self._kept.append(made)
-            for start, _, _, q, _, _, stop in made["heads"][made["ends"][:, 0] == march.RESTING].tolist():
-                if start < stop < self.t_end:
-                    angle = float(self.model.coordinate.theta(q))
-                    self.events.append(Event("break-away", stop, angle, 0.0))
         failed = code in (panels.FAILED, panels.STOPPED, march.UNMOVED)
         if self.law.error is not None and (self.law.stops or failed):
             raise self.law.error
@@ -173,9 +181,12 @@ class March:
             remedy = "; let it change over a range of omega"
             self.stop(FAILED, "the crank chatters from t = " + time_of(self.t) + across + remedy)
         elif self.t >= self.t_end:
-            last, reached = self._kept[-1], "reached t_end = " + time_of(self.t_end)
-            if last["ends"][-1, 0] == march.RESTING:
-                reached += ", at rest from t = " + time_of(last["heads"][-1, 0]) + " on"
+            reached = "reached t_end = " + time_of(self.t_end)
+            rests = np.concatenate([one["ends"][:, 0] for one in self._kept]) == march.RESTING
+            if rests[-1]:
+                starts = np.concatenate([one["heads"][:, 0] for one in self._kept])
+                since = float(starts[rests.size - np.append(~rests[::-1], True).argmax()])
+                reached += ", at rest from t = " + time_of(since) + " on"
             self.stop(DONE, reached)
 
     def _cut(self, kind: float, row: float) -> None:

@@ -206,7 +206,7 @@ def _together(
     laws = LawNumbers(flat, ask.branch, arcs, family, terms)
     laws.law[:, law.THETA0], laws.law[:, law.OMEGA_START] = flat["theta0"], flat["omega_start"]
     laws.law[:, law.WAITS] = 2.0 if timed else 1.0 if varying else 0.0
-    how = np.array([ask.rtol, ask.t_end, ask.max_steps], float)
+    how = np.array([ask.rtol, ask.t_end, ask.max_steps, *ask.knots], float)
     histories = np.empty((left.size, len(MOTION), answers.t.size))
     status, numbers = answers.status[left], np.full((left.size, SUMMED + SUMS), nan)
     known = {

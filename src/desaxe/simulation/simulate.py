@@ -9,7 +9,7 @@ from ..mechanism.inputs import TINY
 from ..runtime.request import check_common, check_sliders, with_known_inputs
 from ..support.checks import whole_number
 from ..support.deadline import Deadline
-from .checks import check_names, read_rtol, read_times, read_until, read_wrt, scalar
+from .checks import check_names, read_knots, read_rtol, read_times, read_until, read_wrt, scalar
 from .drive import torque_derivative
 from .march import Ask
 from .request import one_motion
@@ -44,6 +44,7 @@ def simulate(
     rtol: float = 1e-10,
     times: Any = None,
     until: Any = None,
+    knots: Any = None,
     wrt: str | Sequence[str] = (),
     derivative: Callable[..., Any] | None = None,
     max_steps: int = 1_000_000,
@@ -67,6 +68,8 @@ def simulate(
     rtol         relative tolerance: the largest errors of theta and omega are about rtol of their largest
                  values
     times        instants of the histories [s]; by default 1001 from start to end
+    knots        instants [s] at which a function of t jumps or bends, such as start and end of a push: they
+                 cut panels, also at rest. Without them a push that is shorter than t_end/2000 may be missed
     until        crank angle or angles [rad]: the first that is reached ends the motion
     wrt          parameters by which the motion is differentiated: inputs of the mechanism that are numbers,
                  "theta0", "omega_start", "torque" where it is a number, numbers of loads such as
@@ -128,7 +131,7 @@ def simulate(
     refuse_other_labels({**inputs, **starts})
     by = read_wrt(wrt, {**inputs, **starts, **({} if sliders is None else sliders.numbers())})
     slopes = torque_derivative(torque, derivative) if by else None
-    ask = Ask(end, requested, int(branch), rtol, max_steps, deadline, by, slopes, angles)
+    ask = Ask(end, requested, int(branch), rtol, max_steps, deadline, by, slopes, angles, read_knots(knots))
     if sliders is not None:
         motion: Simulation = sliders.motion(ask, inputs, starts, instants)
         return motion

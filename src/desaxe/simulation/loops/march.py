@@ -21,7 +21,7 @@ from . import law as layout
 from .cuts import earliest
 from .law import acceleration, motion, place, start, still_at
 from .newton import newton
-from .panels import CHOSEN, FLIPPED, GOES_ON, LEFT, STOPPED, T_END, WISH, T, guess, keep, one, value
+from .panels import CHOSEN, FLIPPED, GOES_ON, LEFT, PAUSE, STOPPED, T_END, WISH, T, guess, keep, one, value
 
 if TYPE_CHECKING:
     from typing import Any
@@ -36,6 +36,7 @@ TURNED_ON = 1e-6  # rad: so far from a dead centre the slider has left its posit
 PROBES = 2000  # instants of a motion at which loads that depend on time are asked
 SOON = 1e-6  # of the motion: then a normal force has left 0
 EXACT = 0.02  # tolerances: a panel whose inside is so exact need not be solved again up to a cut
+SAME = 1e-13  # of an instant: a knot that is nearer has been reached
 INSIDE = 1e-12  # rad, and last bits of an angle: so far inside of its piece a function is evaluated
 CROWD, NARROW, BESIDE = 64, 0.1, 0.005  # so many panels, rad that they turn, of a speed on either side of it
 
@@ -198,12 +199,12 @@ def choose(y: Any, clock: Any, knots: Any, sheets: Any, law: Any, data: Any, row
 
 
 def wait(y: Any, clock: Any, knots: Any, sheets: Any, law: Any, data: Any, rows: Any, head: Any) -> int:
-    """Wait at rest until a load moves the crank, or for the end: GOES_ON, or what a function has raised.
+    """Rest until a load moves the crank, or to the next knot: GOES_ON, or what a function has raised.
 
     Asked at many instants: a push that is over sooner than that is not noticed.
     """
     still: Any = empty(32)
-    start, end, before, code = clock[T], clock[T_END], clock[T], RESTS
+    start, end, before, code = clock[T], clock[PAUSE], clock[T], RESTS
     now = end
     for k in range(1, PROBES + 1):
         if law[layout.WAITS] == 2.0:
@@ -269,7 +270,7 @@ def cut_at(
         rate = rows[layout.RATE_Q + at, 0]
         later = t + (cut[cuts.VALUE] - new[at]) / rate if rate != 0.0 else t
         if later == later:
-            t = min(max(later, clock[T]), clock[T_END])
+            t = min(max(later, clock[T]), clock[PAUSE])
             for k in range(3):
                 new[k] = value(series[k], y[k], (t - clock[T]) / h)
     new[at] = cut[cuts.VALUE]
@@ -291,7 +292,7 @@ def step(
         return code
     earliest(y, law, kinks, knots, table, rows, series, clock, cut)
     clock[LEFT] = 0.0
-    if cut[cuts.PART] <= 2.0 and clock[T] + cut[cuts.PART] * head[1] <= clock[T_END]:
+    if cut[cuts.PART] <= 2.0 and clock[T] + cut[cuts.PART] * head[1] <= clock[PAUSE]:
         lost = cut[cuts.LOST_AT] <= cut[cuts.PART] + cuts.SAME
         shortened(y, clock, scales, law, data, table, rows, matrix, head, series, cut)
         head[6] = cut_at(y, clock, law, data, still, head, series, cut, new)
@@ -303,8 +304,8 @@ def step(
         cut[cuts.KIND] = cuts.NO_CUT
         for k in range(3):
             new[k] = value(series[k], y[k], 1.0)
-        if head[6] >= clock[T_END] * (1.0 - 1e-15):
-            head[6] = clock[T_END]
+        if head[6] >= clock[PAUSE] * (1.0 - 1e-15):
+            head[6] = clock[PAUSE]
     clock[T], scales[1] = head[6], max(scales[1], abs(new[1]))
     return code
 
@@ -356,12 +357,23 @@ def account(y: Any, law: Any, data: Any, sums: Any, first: bool) -> None:
     sums[ENERGY], sums[WORK] = max(sums[ENERGY], abs(energy)), y[2]
 
 
+def pause(clock: Any, knots: Any, first: int) -> None:
+    """Set the next instant at which panels are cut, from the first of some numbers on."""
+    before = clock[PAUSE]
+    clock[PAUSE] = clock[T_END]
+    for k in range(first, len(knots)):
+        if clock[T] < knots[k] * (1.0 - SAME) and knots[k] < clock[PAUSE] * (1.0 - SAME):
+            clock[PAUSE] = knots[k]
+    if clock[PAUSE] != before:
+        clock[CHOSEN] = 0.0
+
+
 def advance(
     y: Any, clock: Any, scales: Any, kinks: Any, knots: Any, sheets: Any, law: Any, data: Any, table: Any,
     rows: Any, matrix: Any, heads: Any, records: Any, ends: Any, laws: Any, count: Any,
     sums: Any,
 ) -> int:  # fmt: skip
-    """Panels until the motion ends or stands still, or the memory of records is full: GOES_ON.
+    """Panels to a knot, or until the motion ends or stands still, or the records are full: GOES_ON.
 
     count   in: 1 where the first row has the panel before; out: panels of this call
     """
@@ -373,7 +385,7 @@ def advance(
         if code != 0 or not scales[1] < inf:
             return STOPPED if code == STOPPED else UNMOVED
         account(y, law, data, sums, True)
-    while made < most and clock[T] < clock[T_END]:
+    while made < most and clock[T] < clock[PAUSE]:
         head, series = heads[made + 1], records[made + 1]
         code = step(
             y, clock, scales, kinks, knots, sheets, law, data, table, rows, matrix, heads[made],

@@ -1,6 +1,6 @@
 """Motions of designs, one after the other, in compiled loops; the entries of all loops.
 
-how      relative tolerance, t_end, most steps
+how      relative tolerance, t_end, most steps, knots of time
 history  rows of angles, speeds and accelerations
 """
 
@@ -14,13 +14,14 @@ from numpy import empty, int64, zeros
 from . import law as layout
 from .cuts import JAMMED, KINK, LIMIT
 from .law import acceleration, law_at, place, values
-from .march import CUT, RESTING, RESTS, SUMS, UNMOVED, advance
+from .march import CUT, RESTING, RESTS, SUMS, UNMOVED, advance, pause
 from .panels import GOES_ON, LEFT, SHARP, T_END, T, value
 
 if TYPE_CHECKING:
     from typing import Any
 
 PANELS, LAW = 0.0, 1.0  # what the entry for one motion does
+KNOTS = 3  # the first of them in `how`
 SUMMED = 3  # of the numbers of a design: the first of its sums
 SHARPEST = 3e-11  # of a radian: a limit angle cannot be told better
 
@@ -65,7 +66,7 @@ def follow(
     records: Any, ends: Any, laws: Any, history: Any, numbers: Any,
 ) -> Any:  # fmt: skip
     """The motion of one design: its status."""
-    y, scales, clock, sums, count = empty(3), zeros(3), zeros(7), zeros(SUMS), zeros(1)
+    y, scales, clock, sums, count = empty(3), zeros(3), zeros(8), zeros(SUMS), zeros(1)
     rows, matrix = zeros((layout.ROWS, 16)), empty((32, 32))
     history[:] = nan
     scales[0], clock[T_END], clock[SHARP], clock[LEFT] = how[0], how[1], SHARPEST, 1.0
@@ -74,6 +75,7 @@ def follow(
     status: Any = -1
     while status == -1 and steps < how[2]:
         most = int64(min(len(heads) * 1.0, how[2] - steps + 1.0))
+        pause(clock, how, KNOTS)
         code = advance(
             y, clock, scales, kinks, knots, sheets, law, data, table, rows, matrix, heads[0:most], records,
             ends, laws, count, sums,

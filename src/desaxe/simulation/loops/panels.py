@@ -2,7 +2,7 @@
 
 clock    instant, suggested length, end of the motion, largest error of an angle next to a limit angle, 1
          where the motion starts from an angle that it does not reach again, the side of the guide after a
-         change of side or 0, 1 where pieces and signs are chosen
+         change of side or 0, 1 where pieces and signs are chosen, the next knot of time or the end
 kinks    rows of angles at which the motion is cut, the periods in which they repeat, or inf, and the status
          of a motion that ends there, or -1
 head     of a panel: start, length, error, q, v and W at the start, instant up to which it holds
@@ -23,7 +23,7 @@ from .newton import DEVIATES, ENDS, POINTS, TAIL, newton, product
 if TYPE_CHECKING:
     from typing import Any
 
-T, WISH, T_END, SHARP, LEFT, FLIPPED, CHOSEN = range(7)  # of the clock
+T, WISH, T_END, SHARP, LEFT, FLIPPED, CHOSEN, PAUSE = range(8)  # of the clock
 GOES_ON, FAILED, STOPPED = range(3)
 AHEAD = 1.3  # of a panel: so far its series guess the next one, from there on straight lines
 BEYOND = 1.15  # of a panel: so far its series reach a limit angle, next to which S has no digits
@@ -32,6 +32,7 @@ AIM = 0.01  # tolerances: the error that the next length is chosen for
 GROWTH = 2.0  # from panel to panel
 LEAST_H = 1e-6  # of the motion: no panel is shortened to less to tell a limit angle
 MOST = 1000.0 * 2.0 * pi  # rad in one panel
+LAST_BITS = 1e-15  # of an instant: within a panel that ends where a function jumps
 NEAR = 1e-9  # rad: an angle that a stretch starts from is not reached at once
 
 
@@ -170,10 +171,10 @@ def jumps(
     first, last = product(table[ENDS], rows[layout.RATE_V]), product(table[ENDS + 1], rows[layout.RATE_V])
     for k in range(3):
         end[k] = value(series[k], y[k], 1.0)
-    if motion(t, y, law, data, other, still) != 0:
+    if motion(t * (1.0 + LAST_BITS), y, law, data, other, still) != 0:
         return True
     first -= other[layout.RATE_V, 0]
-    if motion(t + h, end, law, data, other, still) != 0:
+    if motion((t + h) * (1.0 - LAST_BITS), end, law, data, other, still) != 0:
         return True
     worst = max(abs(first), abs(last - other[layout.RATE_V, 0]))
     return bool(h * worst > DEVIATES * TAIL * scales[0] * scales[2])
@@ -221,7 +222,7 @@ def one(
     if wish == 0.0:
         speed, bend = abs(rows[layout.RATE_Q, 0]), abs(rows[layout.CURVED, 0])
         wish = min(1.0 / speed if speed > 0.0 else inf, sqrt(2.0 / bend) if bend > 0.0 else inf, clock[T_END])
-    h, least = min(wish, limited, clock[T_END] - t), 10.0 * (nextafter(t, inf) - t)
+    h, least = min(wish, limited, clock[PAUSE] - t), 10.0 * (nextafter(t, inf) - t)
     while h >= least:
         if last[1] == 0.0 and motion(t, y, law, data, rows, state) == layout.STOP:
             return STOPPED
