@@ -131,6 +131,31 @@ def test_a_scene_brings_machine_motor_and_units(tmp_path, capsys):
     assert json.loads(capsys.readouterr().out)["stroke"] == pytest.approx(machine.events()["stroke"])
 
 
+PRESS = {"AB": 50, "BC": 200, "ec": 10, "m_slider": 20, "I_crank": 2, "F_Y": -900}
+KLOSS = "breakdown_torque=40 breakdown_slip=0.15 synchronous_speed=1500 gear=12"
+
+
+def test_a_motor_in_words(tmp_path, capsys):
+    """By its numbers, in the units of the call, or by a table: as of the objects."""
+    file, press = tmp_path / "motor.csv", [f"{name}={value}" for name, value in PRESS.items()]
+    file.write_text("omega [rpm],torque [N m]\n0,30\n60,45\n100,-20\n")
+    machine = dx.Machine(units="mm, rpm", **PRESS)
+    kloss = dx.kloss(40.0, 0.15, "1500 rpm", gear=12)
+    for words, motor in (
+        ([f"torque.kloss.{word}" for word in KLOSS.split()], kloss),
+        ([f"torque.over_omega={file}"], dx.over_omega(["0 rpm", "60 rpm", "100 rpm"], [30, 45, -20])),
+    ):
+        assert main(["steady", *press, "--units", "mm, rpm", *words, "--json"]) == 0
+        assert numbers(json.loads(capsys.readouterr().out)) == numbers(machine.steady(torque=motor))
+        assert main(["simulate", *press, "--units", "mm, rpm", *words, "t_end=0.1s", "--json"]) == 0
+        omega = json.loads(capsys.readouterr().out)["omega"]
+        assert omega == machine.simulate(torque=motor, t_end="0.1 s")["omega"].tolist()
+    assert main(["steady", *press, "--units", "mm, rpm", *words]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines[:4]] == ["status", "message", "period", "omega_mean"]
+    assert all(line.startswith("    ") for line in lines[lines.index("gradient") + 1 :])
+
+
 @pytest.mark.parametrize(
     ("written", "words", "inputs"),
     [
@@ -200,7 +225,7 @@ COMPLAINTS = {
     f"peak a_C knd=max {LENGTHS}": "did you mean kind?",
     "grid a_C theta=0:b:3 ec=0": "theta=0:b:3: expected FIRST:LAST:COUNT, such as 0deg:360deg:73",
     "grid a_C ec=0 ec=1": "ec=1: ec is given twice",
-    f"steady {LENGTHS}": "desaxe steady: missing torque; each is given as NAME=VALUE, the torque also by",
+    f"steady {LENGTHS}": "desaxe steady: missing torque; each is given as NAME=VALUE; a motor as torque.o",
     "drive ec=0,0.01 AB=1 BC=3 omega0=1": "drive expects one number, for one design: give one, as NAME=VALUE",
     f"tolerance stroke {LENGTHS}": 'give one as "NAME=VALUE +- TOLERANCE"',
     f"solve stroke=100mm {LENGTHS}": "desaxe solve: missing over; each is given as over.AB=LOW:HIGH",
@@ -208,7 +233,10 @@ COMPLAINTS = {
     "fit examples/measured.csv": "desaxe fit: missing over; each is given as over=AB,BC",
     "optimize keep.margin=10:": "keep.margin=10:: an open side is none: keep.margin=10:none",
     "simulate V_C T_in": "V_C: desaxe simulate takes no quantity, only NAME=VALUE, such as names=V_C,T_in",
-    "steady torque.kloss.breakdown_torque=40": "a motor is the torque of [steady] in a scene, by --machine",
+    "steady torque=kloss:40,0.15,1500": "torque = kloss: a motor is given as torque.over_omega=motor.csv, or",
+    "simulate torque.kloss.gear=4": "torque.kloss: kloss() missing 3 required positional arguments",
+    "steady torque.kloss=40 torque.kloss.gear=4": "torque.kloss.gear: torque.kloss has a value already",
+    "steady torque.kind=smooth": "torque: a motor has over_omega",
     "optimize over.AB=0:1 absmax:a_C=3": "given as keep.absmax:a_C=LOW:HIGH, or minimize=absmax:a_C",
     "optimize over.ec=0:1 over=2": "over=2: over has a value already",
     "events -o values.txt": "-o values.txt: its name must end in .json, .csv",

@@ -78,14 +78,15 @@ def test_sums_over_time(omega0, alpha):
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("design", [PRESS, RUBBING], ids=["smooth", "friction"])
+@pytest.mark.parametrize(
+    "design", [PRESS, RUBBING, {**PRESS, "F_Y": dx.damper(100.0, 50.0)}], ids=["smooth", "friction", "damped"]
+)
 def test_gradients_by_differences(design):
     result = dx.drive(fluctuation=0.05, **design)
     sizes = dict.fromkeys(("torque_mean", "flywheel_torque"), result["torque_rms"])
     sizes["power_mean"] = result["power_peak"]
-    for name in ("ec", "BC", "omega0", "m_rod", "I_rod", "F_Y", "fluctuation", "mu")[
-        : 8 if "mu" in design else 7
-    ]:
+    every = ("ec", "BC", "omega0", "m_rod", "I_rod", "F_Y", "fluctuation", "mu")
+    for name in (n for n in every if isinstance(design.get(n, 0.0 if n == "fluctuation" else None), float)):
         base = {"fluctuation": 0.05, **design}
         step = 2e-4 * abs(base[name])
         near, far = (
@@ -159,11 +160,19 @@ def test_gradients_where_a_jump_of_a_load_moves(load, omega0, mu):
         assert along == pytest.approx(slope, rel=1e-6, abs=small), figure
 
 
-@pytest.mark.parametrize("mu", [0.0, 0.15])
-@pytest.mark.parametrize("fluctuation", [0.03, 0.6])
-def test_a_simulated_turn_with_the_flywheel(mu, fluctuation):
+OVER_SPEED = [
+    {"F_Y": dx.damper(linear=200.0)},
+    {"F_Y": dx.damper(quadratic=200.0), "m_slider": 0.0, "m_rod": 0.0, "I_rod": 0.0},
+    {"F_Y": dx.over_V([-2.0, -0.5, 0.5, 2.0], [900.0, 400.0, -400.0, -900.0]), "mu": 0.15},
+    {"F_Y": lambda omega, V_C: -10.0 * omega - 100.0 * V_C},
+]
+
+
+@pytest.mark.parametrize("changes", [{"mu": 0.0}, {"mu": 0.15}, *OVER_SPEED])
+@pytest.mark.parametrize("fluctuation", [0.03, 0.3])
+def test_a_simulated_turn_with_the_flywheel(changes, fluctuation):
     """Under the constant torque the motion repeats itself, and its speed fluctuates as wanted."""
-    design = {**PRESS, "mu": mu}
+    design = {**PRESS, **changes}
     result = dx.drive(fluctuation=fluctuation, **design)
     start = float(result.course["speed"][0])
     theta0 = float(result.course["theta_of_speed"][0])
@@ -177,6 +186,23 @@ def test_a_simulated_turn_with_the_flywheel(mu, fluctuation):
     slow, fast = motion["omega"].min(), motion["omega"].max()
     assert (fast - slow) / 40.0 == pytest.approx(fluctuation, rel=2e-5)
     assert (fast + slow) / 2 == pytest.approx(40.0, rel=1e-6)
+
+
+def test_loads_over_the_speed_by_quadrature_and_by_a_crankshaft():
+    """A small fluctuation: the work of the damper at the mean speed, between its extremes."""
+    damped = {"ec": 0.01, "AB": 0.04, "BC": 0.13, "omega0": 30.0, "F_Y": dx.damper(linear=200.0)}
+    wheel = dx.drive(fluctuation=1e-6, **damped)
+    theta = np.linspace(0.0, 2.0 * np.pi, 20_001)
+    torque = 200.0 * 30.0 * dx.evaluate("Y_wrt_theta", theta=theta, ec=0.01, AB=0.04, BC=0.13) ** 2
+    step = theta[1]
+    mean = torque[:-1].mean()
+    excess = np.cumsum(mean - 0.5 * (torque[1:] + torque[:-1])) * step
+    assert wheel["flywheel_torque"] == pytest.approx(mean, rel=1e-5)
+    assert wheel["flywheel_inertia"] == pytest.approx(np.ptp(excess) / (1e-6 * 30.0**2), rel=1e-5)
+    shaft = dx.Crankshaft([dx.Machine(**{n: v for n, v in damped.items() if n != "omega0"})], phase=[0.0])
+    assert shaft.drive(omega0=30.0, fluctuation=1e-6)["flywheel_inertia"] == pytest.approx(
+        wheel["flywheel_inertia"], rel=1e-9
+    )
 
 
 def test_a_fluctuation_in_percent_and_a_crank_that_needs_no_flywheel():

@@ -81,7 +81,7 @@ def test_other_functions_are_refused(load, message):
     [
         (lambda: dx.over_Y(lambda a, b: a), "over_Y: a function of one argument is expected.* a, b"),
         (lambda: dx.over_V([1, 0], [1, 2]), "over_V: the speeds must ascend, but 0 follows 1"),
-        (lambda: dx.over_V([0, 1], ["1 Pa", "2 Pa"]), "it must be a quantity in N"),
+        (lambda: dx.over_V([0, 1], ["1 Pa", "2 Pa"]), "a pressure needs the size of the piston"),
         (lambda: dx.over_V([0, 1]), "over_V: forces is missing"),
         (lambda: dx.spring(-1.0, 0.1), "stiffness = -1.0: it must be a stiffness >= 0"),
         (lambda: dx.spring("3 N", 0.1), "stiffness"),

@@ -108,6 +108,7 @@ def test_over_the_slider_s_place(tmp_path):
             dx.over_stroke([0, 0.08], out, back, dead_centre="outer", area=AREA, ambient="1 bar"),
             dx.over_stroke([0, 0.08], *by_hand, dead_centre="outer"),
         ),
+        (dx.over_V([-2, 1], out, bore=BORE, ambient=AMBIENT), dx.over_V([-2, 1], by_hand[0])),
     ]
     path = tmp_path / "indicator.csv"
     path.write_text("Y [mm],out [bar],back [bar]\n90,1,1\n170,9,2\n", encoding="utf-8")
@@ -194,6 +195,34 @@ def test_an_ambient_pressure_far_below_the_others_is_a_slip(ambient, units, writ
         machine.over_Y.read(path, bore="60 mm", ambient=ambient)
     with pytest.warns(dx.UnitWarning, match="ambient"):
         machine.over_Y([0.1, 0.2], ["1 bar", "9 bar"], bore="60 mm", ambient=ambient)
+
+
+MM, SI_UNITS = dx.Machine(units="mm, deg, rpm"), dx.Machine(units="m")
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: MM.over_Y([120, 200], [1, 7], [7, 1], bore=90, ambient="1 bar"), 'up to 7 Pa.*"7 bar"'),
+        (lambda: MM.over_stroke([0, 9], [100, 100], bore=80, dead_centre="outer"), "up to 100 Pa, surely"),
+        (
+            lambda: MM.over_Y([120, 200], ["1 bar", "7 bar"], bore=0.09),
+            'bore = 0.09 mm, write bore = "0.09 m"',
+        ),
+        (lambda: MM.over_Y([120, 200], [1e5, 7e5], bore=90000), "a slip: bore = 90000 mm$"),
+        (lambda: dx.over_Y([0.12, 0.2], [1e5, 7e5], bore=90), 'bore = 90 m, write bore = "90 mm"'),
+        (lambda: dx.over_Y([0.12, 0.2], [1e5, 7e5], area=5400), 'area = 5400 m.2, write area = "5400 mm.2"'),
+        (lambda: MM.over_Y([120, 200], ["1 Pa", "7 Pa"], bore="0.09 mm", ambient="1 bar"), None),
+        (lambda: MM.over_Y([120, 200], [1e5, 9e5], [0, 200], bore=90, ambient="1 bar"), None),
+        (lambda: SI_UNITS.over_Y([0.12, 0.2], [1e5, 9e5], bore=1e-4), None),
+    ],
+)
+def test_pressures_and_pistons_of_impossible_size_are_slips(make, message):
+    if message is None:
+        make()  # warnings are errors
+        return
+    with pytest.warns(dx.UnitWarning, match=message):
+        make()
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ import pytest
 import xarray
 
 import desaxe as dx
+from desaxe.scenes.command import run_scene
 from desaxe.support.progress import progress_bar
 from tests.example_scenes import COMPACTOR, SMALL, changed
 
@@ -272,6 +273,21 @@ def test_a_scene_that_is_run_in_python_shows_its_progress(monkeypatch):
     monkeypatch.setattr("desaxe.scenes.scene.progress_bar", bar)
     dx.Machine(ec=0.0, AB=0.1, BC=0.3).scene("Y", theta=[0.0, 1.0]).run()
     assert message == ["values", ""]
+
+
+def test_a_run_says_that_it_reads_computes_and_writes(monkeypatch, tmp_path):
+    steps = []
+
+    @contextmanager
+    def bar():
+        yield lambda *step: steps.append(step)
+
+    monkeypatch.setattr("desaxe.scenes.command.progress_bar", bar)
+    source, page = dx.Machine(ec=0.0, AB=0.1, BC=0.3).to_scene(tmp_path / "a.toml", "Y"), tmp_path / "a.html"
+    assert run_scene(str(source), False, str(page)) == 0
+    assert steps[0] == (0, 1, f"reading {source}")
+    assert [what for *_, what in steps[1:]][-2:] == ["writing a.html", ""]
+    assert [done for done, *_ in steps[1:]] == [*range(steps[1][1] + 1)]
 
 
 @pytest.mark.parametrize("text", ["29.5 rad/s", "-20.2 m/s", "-7740 rad/s2", "-994 m/s2"])

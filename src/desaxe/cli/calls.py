@@ -30,7 +30,8 @@ MISSING = re.compile(r"(\w+)\(\) missing \d+ required (?:keyword-only|positional
 OF_MEASURES = {"solve": "where.{}=VALUE", "optimize": "keep.{0}=LOW:HIGH, or minimize={0}, maximize={0}"}
 OVER = {"fit": "over=AB,BC"}  # where the bounds of an input may be left out
 PLUS_MINUS = "dx.plus_minus(value, tolerance)"
-SCENE = ", the torque also by [steady] of a scene"
+MOTOR = "torque.over_omega=motor.csv, or torque.kloss.breakdown_torque=40 and so on, or [steady] of a scene"
+ON_MOTOR = ("steady", "simulate")  # calls that take a motor
 
 
 OPTIONS = (
@@ -77,9 +78,6 @@ def _call(options: argparse.Namespace) -> int:
     pair = next((name for name in arguments if ":" in name), None)
     if pair is not None and call in OF_MEASURES:
         raise UsageError(f"{pair}: a measure is given as {OF_MEASURES[call].format(pair)}")
-    if isinstance(arguments.get("torque"), dict):
-        key = next(iter(arguments["torque"]))
-        raise UsageError(f"torque.{key}: a motor is the torque of [steady] in a scene, by --machine")
     quantities = _quantities(call, names)
     machine, arguments = _machine(call, options, arguments)
     try:
@@ -143,8 +141,8 @@ def _as_words(message: str) -> str:
     if missing:
         names = missing[2].replace("'", "")
         word = OVER.get(missing[1], "over.AB=LOW:HIGH") if names == "over" else "NAME=VALUE"
-        scene = SCENE if "torque" in names else ""
-        return f"desaxe {missing[1]}: missing {names}; each is given as {word}{scene}"
+        motor = f"; a motor as {MOTOR}" if "torque" in names else ""
+        return f"desaxe {missing[1]}: missing {names}; each is given as {word}{motor}"
     message = message.replace(PLUS_MINUS, '"NAME=VALUE +- TOLERANCE"')
     head, call, _ = message.partition("; call it for each of them")
     return f"{head}: give one, as NAME=VALUE" if call else message
@@ -165,9 +163,11 @@ def _machine(call: str, options: argparse.Namespace, arguments: dict[str, Any]) 
 
     if options.machine is None:
         machine = Machine(units=options.units)
+        arguments = _with_motor(call, arguments, machine.units)
     else:
         kind = Crankshaft if "crankshaft" in plain_data(options.machine) else Machine
         machine = kind.read(options.machine, units=options.units)
+        arguments = _with_motor(call, arguments, machine.units)
         arguments = {**_motor(call, options.machine, arguments, "sliders" in machine), **arguments}
     if call in OF_RANGES:
         pairs = [name for name, value in arguments.items() if name in INPUTS and type(value) is tuple]
@@ -199,6 +199,28 @@ def _quantities(call: str, names: list[str]) -> list[Any]:
     return [measures if first.name == "names" else measures[0]] if names else []
 
 
+def _with_motor(call: str, arguments: dict[str, Any], units: Any) -> dict[str, Any]:
+    """The arguments with the motor that `torque.kloss.NAME=VALUE`, `torque.over_omega=FILE` stand for."""
+    from ..scenes.loads import motor_of
+
+    torque = arguments.get("torque") if call in ON_MOTOR else None
+    first = torque
+    while isinstance(first, (list, tuple)):  # kloss:40,0.15
+        first = first[0]
+    if isinstance(first, str) and first[:1].isalpha():
+        raise UsageError(f"torque = {first}: a motor is given as {MOTOR}")
+    if not isinstance(torque, dict):
+        return arguments
+    table: dict[str, Any] = {}
+    for key, value in torque.items():
+        kind, dot, name = key.partition(".")
+        entries = table.setdefault(kind, {}) if dot else table
+        if not isinstance(entries, dict):
+            raise UsageError(f"torque.{key}: torque.{kind} has a value already")
+        entries[name or kind] = value
+    return {**arguments, "torque": motor_of("torque", table, None, units)}
+
+
 def _motor(call: str, path: str, arguments: Mapping[str, Any], several: bool) -> dict[str, Any]:
     """The [steady] of the scene, for the calls that ask for a torque; a flywheel is of `steady` alone.
 
@@ -208,7 +230,7 @@ def _motor(call: str, path: str, arguments: Mapping[str, Any], several: bool) ->
     from ..scenes.parts.motor import ROWS
     from ..scenes.scene import content_of_machine
 
-    if call not in ("steady", "simulate"):
+    if call not in ON_MOTOR:
         return {}
     content = content_of_shaft(path)[0] if several else content_of_machine(path)
     steady = next(iter(content.of("steady")), None)

@@ -50,6 +50,11 @@ class ShaftCycle(Cycle):
         """True if a guide has friction."""
         return any(own.has_friction for own in self.own)
 
+    @property
+    def follows_speed(self) -> bool:
+        """True if a load depends on how fast the crank turns."""
+        return any(own.follows_speed for own in self.own)
+
     def values(
         self, names: Sequence[str], theta: Array, row: Any = 0, motion: Motion | None = None, **other: Any
     ) -> dict[str, Array]:

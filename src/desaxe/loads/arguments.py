@@ -70,7 +70,7 @@ def _parameters(name: str, function: Callable[..., Any]) -> Sequence[Parameter]:
     except ValueError:
         message = getattr(function, "__name__", type(function).__name__)
         raise TypeError(
-            f"{name}: {message} does not say what its arguments are; give a function of theta, such as "
-            f"lambda theta: {message}(theta)"
+            f"{name}: {message} does not say what its arguments are; give a function of any of "
+            f"{', '.join(ARGUMENTS)}, such as lambda theta: {message}(theta)"
         ) from None
     return list(every.values())

@@ -166,7 +166,8 @@ class MakeOverV(MakeTable):
     kind    "linear", or "smooth": a curve without corners, which rises and falls only where the table does
 
     Beyond the speeds the values at the ends hold. `over_V(f, derivative=None)` makes one of a function of
-    V_C: arrays in, arrays out, or numbers alone. `machine.over_V` is the same in the units of a machine.
+    V_C: arrays in, arrays out, or numbers alone. With `area=` or `bore=` the values are pressures, as in
+    `over_theta`. `machine.over_V` is the same in the units of a machine.
     Raises ValueError or TypeError for a table that is no function of the speed.
     """
 
@@ -181,11 +182,15 @@ class MakeOverV(MakeTable):
         kind: str = "linear",
         *,
         derivative: Callable[[Any], Any] | None = None,
+        area: Any = None,
+        bore: Any = None,
+        ambient: Any = None,
     ) -> Load:
         """A load over the slider's speed; see `help(desaxe.over_V)`."""
+        piston = self.piston(area, bore, ambient)
         if callable(speeds) or derivative is not None:
-            return load_over("over_V", "V_C", (speeds, forces, derivative), self.units)
-        return table_over_V(*self.columns(speeds, forces), kind=kind)
+            return load_over("over_V", "V_C", (speeds, forces, derivative), self.units, piston)
+        return table_over_V(*self.columns(speeds, forces, piston=piston), kind=kind)
 
 
 spring = MakeSpring()

@@ -43,8 +43,8 @@ class MakeTable(Maker):
             warn_of_slips({self.over: max(x.values, key=abs)}, stacklevel=outside() + 1)
         units, plain = ("Pa",) if piston else self.values, self._plain_unit(piston)
         every = zip(self.ways, (first, *values[1:]), strict=True)
-        columns = (forces_of(f"{self.name}: {w}", y, units, plain, piston) for w, y in every if y is not None)
-        return [x, *columns]
+        ways = {way: column for way, column in every if column is not None}
+        return [x, *forces_of(self.name, ways, units, plain, piston)]
 
     def from_file(self, source: Any, units: Mapping[str, str | None], **options: Any) -> Any:
         """The result of the call for columns of a file or a frame; units: of places and values."""

@@ -30,7 +30,6 @@ from .scenes import inputs_of_content
 
 ANGLES = ("phase", "bank", "firing", "spacing", "position", "I_shaft")
 OF_SHAFT = ("T_in", "F_shaking_X", "F_shaking_Y", "M_shaking")  # to compile
-RESULTS = ("outputs", "reduce", "peak", "check", "picture", "results")  # of a scene
 SAME = 1e-9  # rad: a firing that is at its phase and bank
 
 
@@ -273,8 +272,7 @@ def content_of_shaft(path: str | PathLike[str]) -> tuple[Content, dict[str, Any]
         raise SceneError(f"{file}: crankshaft.{wrong}: unknown key; {hint(wrong, ANGLES)}")
     if "phase" not in table:
         raise TypeError(f"{file}: phase is missing in [crankshaft]")
-    design = {key: value for key, value in data.items() if key not in RESULTS}
-    return read_scene({**design, "outputs": ["stroke"]}, file.parent), table
+    return read_scene(data, file.parent, alone=True), table
 
 
 def _restored(inputs: dict[str, Any], units: UnitSystem) -> Crankshaft:

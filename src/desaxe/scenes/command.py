@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 
-from ..support.progress import progress_bar
+from ..support.progress import Steps, progress_bar
 from ..support.shown import printable
 from .content import Content, Run
 from .document.page import Page, checked
@@ -22,13 +22,15 @@ def run_scene(
     tolerances: Mapping[str, str] = MappingProxyType({}),
 ) -> int:
     """Run a scene, print its report, write its files and its page, then OSError for those that failed."""
-    with warnings.catch_warnings(record=True) as heard:
+    with progress_bar() as watch, warnings.catch_warnings(record=True) as heard:
+        Steps(1, watch).report(f"reading {printable(source)}")
         scene = scene_of(source)
+        content, units, page = scene.content, scene.shown_in, None
+        if file is not None:
+            page = checked(_page(content, source, overwrite, file, tolerances), content, units)
     for one in heard:
         warnings.showwarning(one.message, one.category, one.filename, one.lineno)
-    content, units, page = scene.content, scene.shown_in, None
-    if file is not None:
-        page = checked(_page(content, source, overwrite, file, tolerances), content, units)
+    if page is not None:
         page = page._replace(warnings=tuple(str(one.message) for one in heard))
     broken: list[OSError] = []
 

@@ -62,7 +62,7 @@ KINDS = {
     "over_stroke": LoadKind(over_stroke, OverStroke, WAYS, ("distance", "value"), (*GAS, "dead_centre"), "Y",
                             example="[[0, -400], [0.005, 0]], or [[0, -400, 0], [0.005, 0, 0]] " + BOTH,
                             needs=("dead_centre", '"outer" or "inner", from which over_stroke measures')),
-    "over_V": LoadKind(over_V, OverSpeed, ("values",), ("V_C", "value"), ("kind",), "V_C",
+    "over_V": LoadKind(over_V, OverSpeed, ("values",), ("V_C", "value"), GAS, "V_C",
                        example="[[-2, 900], [0, 0], [2, -400]]"),
     "spring": LoadKind(spring, Spring, options=("free",), numbers=(STIFFNESS, FREE),
                        needs=("free", "the position along Y at which the spring has no force")),

@@ -160,7 +160,7 @@ def run_content(
     page: Page | None = None,
 ) -> Run:
     """Compute everything, `report` it, then write the files, pictures and page; all in these units."""
-    files = len(content.of("picture")) + (content.data is not None)
+    files = len(content.of("picture")) + (content.data is not None) + (page is not None)
     steps = steps_of(content)
     steps.total += files + (content.store is not None and bool(content.of("steady")))
     with using(content.definitions), errors_in(units):
@@ -172,6 +172,7 @@ def run_content(
                 run = _attempted(run, name, job)
             if page is not None:
                 so_far = run
+                steps.next(f"writing {page.path.name}")
                 run = _attempted(run, str(page.path), lambda: [write_page(page, content, so_far, units)])
             steps.next("")
     return run

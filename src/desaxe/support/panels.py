@@ -104,11 +104,13 @@ class Panels:
 
         return read
 
-    def roots(self, values: Array) -> Array:
-        """The places at which a function changes its sign, in rows padded with the first edge."""
-        sampled, places = np.sign(self._rows(self.samples(values))), self._rows(self.places)
-        sampled[sampled == 0.0] = 1.0
-        row, at = np.nonzero(np.diff(sampled, axis=1))
+    def roots(self, values: Array, least: float = 0.0) -> Array:
+        """The places at which a function changes its sign, in rows padded with the first edge.
+
+        least   of a value: down to -least it counts as positive
+        """
+        negative, places = self._rows(self.samples(values)) < -least, self._rows(self.places)
+        row, at = np.nonzero(np.diff(negative, axis=1))
         result = places[row, at].copy()
         panel, number = np.divmod(at, SAMPLES.size)
         inside = number < SAMPLES.size - 1  # else between two panels

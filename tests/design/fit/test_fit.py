@@ -188,6 +188,7 @@ def test_prediction_report_picture_and_pickle(tmp_path):
     picture = result.plot()
     assert picture.save(tmp_path / "fit.png").stat().st_size > 1000
     assert picture["a_C"] in picture.axes[0].lines
+    assert [ax.get_ylabel() for ax in picture.axes] == ["a_C [m/s^2]", "measured - fitted [m/s^2]"]
 
 
 def test_tables_labels_and_files(tmp_path, capsys):
@@ -293,6 +294,9 @@ def test_converged_only_where_the_gradient_is_small():
     assert re.search(r"ran into a change point: .* at theta = (1\.5|4\.7)", result["message"])
     bounded = dx.fit(data, over={"AB": 0.04, "BC": (0.06, 0.09)}, ec=0.0, nuisance="Y_bias")
     assert (bounded["status"], bounded["at_bound"]) == (0, {"BC": "low"})
+    assert bounded["message"] == "converged; BC: held by the lower bound"
+    (row,) = (line for line in bounded.report().splitlines() if line.startswith("  BC [m]"))
+    assert re.fullmatch(r"  BC \[m\] +0\.06 +held by the lower bound", row)
 
 
 def test_nuisances_take_starts_and_ranges():
@@ -340,6 +344,10 @@ def test_a_scene_gives_all_of_its_machine(tmp_path, capsys):
     assert main(["fit", str(path), "over=m_slider", "--machine", str(scene), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
     assert (result["status"], result["value"]["m_slider"]) == (0, pytest.approx(4.0, rel=1e-12))
+    alone = SCENE.format(mu=0.1).removeprefix('outputs = ["T_in"]\n').replace("theta = 1\n", "")
+    scene.write_text(alone, encoding="utf-8")
+    assert main(["fit", str(path), "over=m_slider", "--machine", str(scene), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == result
     scene.write_text(SCENE.format(mu=[0.1, 0.2]), encoding="utf-8")
     assert main(["fit", str(path), "over=m_slider", "--machine", str(scene)]) == 2
     assert "mu: 2 values, and a fit is of one machine" in capsys.readouterr().err

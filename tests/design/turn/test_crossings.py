@@ -79,6 +79,28 @@ def test_a_jump_of_a_load_is_a_crossing():
         assert result["gradient"][p][k] == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("knots", "forces", "kind", "theta", "rising", "share"),
+    [  # the pin carries -F_Y; shares in rad
+        ([0.0, 1.0, 2.0], [0.0, 100.0, 0.0], "step", [1.0, 2.0], [-1, 1], 0.0),
+        ([0.0, 1.0, 2.0], [0.0, -100.0, 0.0], "step", [1.0, 2.0], [1, -1], 1.0),
+        ([0.0, 1.0], [0.0, 100.0], "step", [0.0, 1.0], [1, -1], 0.0),
+        ([0.0, 1.0, 2.0], [-100.0, 0.0, 100.0], "step", [0.0, 1.0, 2.0], [1, -1, -1], 1.0),
+        ([0.0, 1.0, 2.0, 3.0], [0.0, 0.0, 100.0, 0.0], "linear", [1.0, 3.0], [-1, 1], 0.0),
+        ([0.0, 1.0, 2.0, 3.0], [0.0, 0.0, -100.0, 0.0], "linear", [1.0, 3.0], [1, -1], 2.0),
+    ],
+)
+@pytest.mark.parametrize("omega0", [1.0, -1.0])
+def test_a_quantity_that_stays_at_the_value(knots, forces, kind, theta, rising, share, omega0):
+    """By the table itself: where it leaves 0, comes back to it, and is above."""
+    load = dx.over_theta(knots, forces, kind)
+    result = dx.crossings("F_C_Y", m_slider=0.0, F_Y=load, ec=0.0, AB=0.1, BC=0.3, omega0=omega0)
+    assert result["theta"].tolist() == pytest.approx(theta, abs=1e-14)
+    assert result["rising"].tolist() == rising
+    assert result["side"].tolist() == (rising if kind == "step" else [0.0] * len(theta))
+    assert result["share"] == pytest.approx(share / (2.0 * math.pi), abs=1e-14)
+
+
 @pytest.mark.parametrize(("AB", "BC"), [(0.1, 0.3), (0.03, 0.12), (0.05, 0.2), (0.1, 0.25), (0.033, 0.127)])
 @pytest.mark.parametrize("ec", [0.0, 0.01, 0.02])
 def test_what_touches_the_value_does_not_cross_it(AB, BC, ec):

@@ -48,8 +48,10 @@ def drive(
     power_mean, power_peak    net work over the time of a turn, and the largest magnitude of T_in omega [W]
     flywheel_inertia          [kg m2] on the crank: the smallest that keeps the required fluctuation about
                               |omega0|, the mean of fastest and slowest, under a constant torque; friction
-                              included. 0 if none is needed, NaN with alpha
-    flywheel_torque           that constant torque [N m]; without friction it is torque_mean
+                              and loads over the speed are those of that motion. 0 if none is needed, NaN
+                              with alpha and where none settles
+    flywheel_torque           that constant torque [N m]: torque_mean where neither friction nor a load
+                              depends on the speed, next to it for a small fluctuation
     starting_torque           what it takes to start from the worst standstill [N m], positive in the way of
                               turning: the largest torque over theta that loads, gravity and friction hold
                               against; at `theta_start` [rad]. Infinite where friction jams

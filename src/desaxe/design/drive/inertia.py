@@ -6,7 +6,8 @@ is between (1 - f/2) and (1 + f/2) times its mean Omega, then with b and a half 
 
     max(W - a M) = a J - C,   min(W - b M) = b J - C,   J = (max(W - a M) - min(W - b M))/(f Omega^2).
 
-Friction depends on z and its slope, so L is corrected until it stays. The derivatives follow from those of
+Friction and loads over the speed depend on z and its slope, so L is corrected until it stays, from that at
+the mean speed on. The derivatives follow from those of
 the torque: with G(theta, z, alpha) + J alpha = T and alpha = z'/2, the change z_p by a parameter p obeys
 
     z_p' = 2 (T_p - G_z z_p - G_p - J_p alpha)/(G_alpha + J),
@@ -27,7 +28,7 @@ from ...support.panels import WEIGHT, Array, Panels, resolved
 from ...support.roots import root
 from ..turn.turn import CREEP, Turn
 
-ROUNDS = 60  # of corrections of the friction
+ROUNDS = 60  # of corrections of the torque
 SETTLED = 1e-12  # of the inertia: what a correction may still change
 
 
@@ -53,12 +54,13 @@ def flywheel_for(
     Besides, by each input and by `fluctuation`, the derivatives of torque and inertia.
     """
     state = _store(design, fluctuation, None)
-    for _ in range(ROUNDS if design.has_friction else 0):
+    varies = design.has_friction or design.follows_speed
+    for _ in range(ROUNDS if varies else 0):
         before, state = state, _store(design, fluctuation, state)
         if abs(state.inertia - before.inertia) <= SETTLED * abs(state.inertia):
             break
     else:
-        if design.has_friction:
+        if varies:
             return None
     return state, _gradient(design, fluctuation, state)
 
@@ -68,8 +70,16 @@ def _store(design: Turn, fluctuation: float, before: FlywheelMotion | None) -> F
     names = ["T_in", "M_eff", "M_eff_wrt_theta"]
     motion = None if before is None else before.motion
 
+    def without_friction(theta: Array) -> dict[str, Array]:
+        if not design.follows_speed:
+            return design.values(names, theta, omega0=design.direction * CREEP, mu=None)
+        result = design.values(names, theta, motion=motion, mu=None)
+        now = {"omega": design.numbers["omega0"], "alpha": 0.0} if motion is None else motion(theta)
+        inertial = result["M_eff"] * now["alpha"] + 0.5 * result["M_eff_wrt_theta"] * now["omega"] ** 2
+        return {**result, "T_in": result["T_in"] - inertial}
+
     def loads(theta: Array, row: Array) -> dict[str, Array]:
-        result = design.values(names, theta, omega0=design.direction * CREEP, mu=None)
+        result = without_friction(theta)
         if design.has_friction:
             rough = design.values(["T_in"], theta, motion=motion)["T_in"]
             smooth = design.values(["T_in"], theta, motion=motion, mu=None)["T_in"]

@@ -18,7 +18,7 @@ from ...support.forks import IMPORTS
 from ...support.shown import shown
 from .data import MOST, Array, Data, read_data
 from .model import FittedModel
-from .result import DONE, OPEN, STOPPED, WORDS, Fit
+from .result import BOUNDS, DONE, OPEN, STOPPED, WORDS, Fit
 from .solve import FitSolution, solve
 from .spread import LOSSES, inflation, offset_of, spread_of, weights_of
 from .unknowns import unknowns_of
@@ -72,7 +72,8 @@ def fit(
     unidentified       directions that the data do not fix: dicts name -> weight, a change relative to the
                        unknown's own value (or range, where that is about 0), the largest weight being 1; so
                        {AB: 1, BC: 1} leaves AB/BC known alone. std_error is infinite for the unknowns in them
-    at_bound           dict name -> "low" or "high" for unknowns that end at a bound
+    at_bound           dict name -> "low" or "high" for unknowns that end at a bound: their std_error and
+                       interval leave the bound out of account
     evaluations        of the model, all starts together
     chi_square         sum of the squares of residual/sigma over the degrees of freedom, where sigma is given:
                        about 1 if the model holds
@@ -223,6 +224,10 @@ def _result(model: FittedModel, result: FitSolution, loss: str, absolute: bool) 
     converged = _has_converged(model, result.x, residuals, jacobian, loss)
     status = STOPPED if not converged else OPEN if spread.unidentified else DONE
     where = "" if converged else _change_point(model, result.x)
+    at_bound = _at_bound(model, result.x)
+    for end, words in BOUNDS.items():
+        held = [name for name, which in at_bound.items() if which == end]
+        where += f"; {', '.join(held)}: {words}" if held else ""
     total = float(residuals @ residuals) if absolute else np.nan
     by_name = dict(zip(model.names, result.x.tolist(), strict=True))
     return Fit(
@@ -239,7 +244,7 @@ def _result(model: FittedModel, result: FitSolution, loss: str, absolute: bool) 
             "residuals": {q: column - values[q] for q, column in model.data.measured.items()},
             "jacobian": slopes,
             "unidentified": spread.unidentified,
-            "at_bound": _at_bound(model, result.x),
+            "at_bound": at_bound,
             "evaluations": result.evaluations,
             "chi_square": total / freedom if freedom else np.nan,
             "status": status,

@@ -14,6 +14,7 @@ from ...support.text_table import table
 from .model import FittedModel
 
 DONE, STOPPED, OPEN = map(int, FitStatus)
+BOUNDS = {"low": "held by the lower bound", "high": "held by the upper bound"}
 WORDS = {int(status): status.words for status in FitStatus}
 
 
@@ -87,8 +88,10 @@ class Fit(Answer):
         rows = [["", "value", "std. error", "95 % interval"]]
         for name, title in titles.items():
             low, high = shown["interval"][name]
-            value, error = shown["value"][name], shown["std_error"][name]
-            rows.append([title, f"{value:13.7g}", f"{error:11.3g}", f"{low:.6g} ... {high:.6g}"])
+            spread = f"{shown['std_error'][name]:11.3g}", f"{low:.6g} ... {high:.6g}"
+            end = self["at_bound"].get(name)
+            spread = ("", BOUNDS[end]) if end else spread
+            rows.append([title, f"{shown['value'][name]:13.7g}", *spread])
         lines += table(rows, "lrrl", indent="  ")
         for direction in self["unidentified"]:
             weights = ", ".join(f"{weight:+.3g} {name}" for name, weight in direction.items())
@@ -138,7 +141,7 @@ class Fit(Answer):
             left.set_ylabel(f"{q} [{unit}]")
             right.plot(at, self["residuals"][q], ".", ms=3, color="0.45")
             right.axhline(0.0, color="tab:blue", lw=1)
-            right.set_ylabel("measured - fitted")
+            right.set_ylabel(f"measured - fitted [{unit}]")
         axes[0][0].legend(frameon=False)
         for ax in axes[-1]:
             ax.set_xlabel(f"{'crank angle' if data.course == 'theta' else 'time'} [{along.unit}]")

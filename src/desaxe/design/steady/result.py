@@ -77,10 +77,10 @@ def _empty(count: int, designs: DesignRows) -> dict[str, Any]:
     steps, others = STEPS * designs.turns + 1, np.empty(count, object)
     others[:] = [[] for _ in range(count)]
     return {
-        **{name: np.full((count, steps), np.nan) for name in COURSE},
-        **{name: np.full(count, np.nan) for name in NUMBERS}, "stable": np.zeros(count, bool),
-        "gradient": {key: {} for key in KEYS}, "flywheel_inertia": np.full(count, np.nan), "others": others,
         "status": np.full(count, 4, np.int8), "message": np.full(count, "bad input", object),
+        **{name: np.full(count, np.nan) for name in (*NUMBERS, "flywheel_inertia")},
+        "stable": np.zeros(count, bool), "others": others,
+        **{name: np.full((count, steps), np.nan) for name in COURSE}, "gradient": {key: {} for key in KEYS},
     }  # fmt: skip
 
 
@@ -124,10 +124,14 @@ def _motion(states: States, row: Any) -> dict[str, Any]:
 def _other(motion: dict[str, Any], J: float) -> dict[str, Any]:
     """A periodic motion that is not the one of its design."""
     jams = motion["jams"]
+    figures = _mapped({n: motion[n] for n in (*NUMBERS, "stable", *COURSE, "gradient")}, _plain)
     return {
-        **_mapped({n: motion[n] for n in (*COURSE, *NUMBERS, "stable", "gradient")}, _plain),
-        "flywheel_inertia": J, "others": [], "status": int(jams), "message": JAMS if jams else "ok",
-    }  # fmt: skip
+        "status": int(jams),
+        "message": JAMS if jams else "ok",
+        "flywheel_inertia": J,
+        "others": [],
+        **figures,
+    }
 
 
 def _of_wheel(by: Mapping[str, Array], J: Array) -> dict[str, Array]:

@@ -65,7 +65,8 @@ def crossings(
     status    0; 1 the crank does not turn fully, 2 change point, 3 equal to the value at all angles, 4 bad
               input, 5 no value at some angles
 
-    A quantity that touches the value does not cross it. Panels between kinks and jumps are halved until the
+    A quantity that touches the value does not cross it; where it stays at it for a while, both ends of the
+    stretch are crossings if it leaves it. Panels between kinks and jumps are halved until the
     quantity is resolved; Newton's method with the derived slope ends each search. Raises as `evaluate` does.
 
     See docs/choose.md: which call for which question.
@@ -126,32 +127,52 @@ def _of_one(cycle: Cycle, name: str, level: float, floor: float = 0.0) -> tuple[
         return NONE, CrossingStatus.NO_VALUE
     height = values - level
     largest = np.abs(values).max()
-    if np.abs(height).max() <= max(EQUAL * max(largest, abs(level)), floor):
+    least = max(EQUAL * max(largest, abs(level)), floor)
+    if np.abs(height).max() <= least:
         return NONE._replace(share=0.0), CrossingStatus.EQUAL
     one = Panels(edges, {name: height})
     sampled = one.samples(height)
-    roots = one.roots(height)
-    roots = np.append(roots, edges[:1]) if np.sign(sampled[0]) * np.sign(sampled[-1]) < 0.0 else roots
-    roots = np.sort((roots - edges[0]) % cycle.angle)
+    stays = bool((np.abs(height) <= least).all(axis=1).any())  # at the value, on a panel
+    least = least if stays else 0.0
+    roots = _sign_changes(one, height, cycle.angle, least)
+    if stays:  # either end of such a stretch may be a crossing
+        others = _sign_changes(one, -height, cycle.angle, least)
+        apart = np.abs(others[:, None] - roots)
+        apart = np.minimum(apart, cycle.angle - apart).min(axis=1, initial=np.inf)
+        roots = np.append(roots, others[apart > TOGETHER])
+    roots = np.sort(roots)
     gaps = np.diff(roots, append=roots[:1] + cycle.angle)
     between = np.abs(one.at((roots + 0.5 * gaps) % cycle.angle + edges[0], height))
     is_close = (gaps < TOGETHER) | ((gaps < NEAR) & (between <= EQUAL * largest))
     theta = _odd(roots, is_close, cycle.angle) + edges[0]
     ends = one.ends(height)
     jumps = np.roll(ends[:, 1], 1) - ends[:, 0]  # at the start of each panel: before - after
-    gap = np.abs(theta[:, None] - edges[:-1])
+    gap = np.abs(theta[:, None] - edges[:-1]) % cycle.angle
     edge = np.minimum(gap, cycle.angle - gap)
     at = edge.argmin(axis=1) if theta.size else np.empty(0, int)
     is_jump = (edge.min(axis=1, initial=np.inf) <= AT_EDGE) & (np.abs(jumps[at]) > JUMP * largest)
-    theta = np.where(is_jump, edges[at], _polished(cycle, name, theta, level))
+    theta = (np.where(is_jump, edges[at], _polished(cycle, name, theta, level)) - edges[0]) % cycle.angle
+    order = np.argsort(theta)
+    theta, is_jump = theta[order] + edges[0], is_jump[order]
     middle = theta + 0.5 * np.diff(theta, append=theta[:1] + cycle.angle)
-    above = one.at((middle - edges[0]) % cycle.angle + edges[0], height) > 0.0
+    between = one.at((middle - edges[0]) % cycle.angle + edges[0], height)
+    sign = np.where(np.abs(between) <= least, 0.0, np.sign(between))
+    above = sign > 0.0
     share = float(np.diff(theta, append=theta[:1] + cycle.angle)[above].sum() / cycle.angle)
     share = share if theta.size else float(sampled[np.abs(sampled).argmax()] > 0.0)
-    rising = np.where(above, 1.0, -1.0)
+    change = np.sign(sign - np.roll(sign, 1))
+    rising = np.where(change == 0.0, np.where(above, 1.0, -1.0), change)
     order = np.argsort(theta % cycle.angle)
     side = np.where(is_jump, rising, 0.0)
     return Crossings((theta % cycle.angle)[order], rising[order], side[order], share), CrossingStatus.OK
+
+
+def _sign_changes(panels: Panels, height: Array, angle: float, least: float) -> Array:
+    """Angles from the start of the cycle at which a function changes its sign; -least counts as positive."""
+    first, last = panels.samples(height)[[0, -1]] < -least
+    roots = panels.roots(height, least)
+    roots = np.append(roots, panels.edges[:1]) if first != last else roots
+    return np.asarray((roots - panels.edges[0]) % angle)
 
 
 def _odd(roots: Array, is_close: NDArray[np.bool_], angle: float) -> Array:

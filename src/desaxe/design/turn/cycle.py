@@ -128,6 +128,11 @@ class Cycle:
         """True if a guide has friction."""
         return bool(np.any(self.numbers.get("mu", 0.0)))
 
+    @property
+    def follows_speed(self) -> bool:
+        """True if a load depends on how fast the crank turns."""
+        return any(load.follows_speed for load in self.loads.values())
+
     def values(
         self, names: Sequence[str], theta: Array, row: Any = 0, motion: Motion | None = None, **other: Any
     ) -> dict[str, Array]:

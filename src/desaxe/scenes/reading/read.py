@@ -33,6 +33,8 @@ from ..parts.turning import feasibility_of
 from ..schema import SECTIONS, SceneError, check, shown
 from .values import Value, require_for_grid, require_known, values_of, written_inputs
 
+REQUESTS = ("outputs", "reduce", "peak", "check", "picture", "results")  # keys that are none of a machine
+
 
 def plain_data(source: str | PathLike[str] | Mapping[str, Any]) -> dict[str, Any]:
     """The tables of a scene file, or of the same thing in Python (NumPy numbers and arrays are fine)."""
@@ -69,7 +71,7 @@ def read(data: Mapping[str, Any], folder: Path | None = None, *, alone: bool = F
     """The content of a scene; SceneError names the first key that is wrong.
 
     folder   where the scene file is, and perhaps the files of its loads
-    alone    the machine and its motor, without the peaks, checks and pictures that are requested
+    alone    the machine and its motor, without the other results that the file requests
     """
     with _refusing():
         units = UnitSystem.read(data.get("units"))
@@ -77,16 +79,18 @@ def read(data: Mapping[str, Any], folder: Path | None = None, *, alone: bool = F
     with _refusing("quantities: "):
         own = read_definitions(data.get("quantities", {}))
         redefine(own)
+    if alone:
+        data = {key: value for key, value in data.items() if key not in REQUESTS}
+    elif not any(data.get(key) for key in ("outputs", "peak", "check", "picture", "steady")):
+        raise SceneError(
+            "the scene requests nothing: give outputs = [...], [[peak]], [[check]], [[picture]] or [steady]"
+        )
     with using(own):
-        return _content(data, folder, units, own, () if alone else ("check", "peak", "picture"))
+        return _content(data, folder, units, own)
 
 
 def _content(
-    data: Mapping[str, Any],
-    folder: Path | None,
-    units: UnitSystem,
-    own: tuple[Definition, ...],
-    requests: tuple[str, ...],
+    data: Mapping[str, Any], folder: Path | None, units: UnitSystem, own: tuple[Definition, ...]
 ) -> Content:
     inputs = _inputs(data, folder, units)
     warn_of_slips(written_inputs(data), units, 6, inputs)
@@ -98,14 +102,10 @@ def _content(
         require_known(f"outputs #{index}", name, "omega" in inputs)
     if outputs:
         require_for_grid("outputs", outputs, inputs)
-    if not (outputs or any(data.get(key) for key in ("peak", "check", "picture", "steady"))):
-        raise SceneError(
-            "the scene requests nothing: give outputs = [...], [[peak]], [[check]], [[picture]] or [steady]"
-        )
 
     def each(key: str, one_of: Any) -> list[Any]:
         """The requests of the tables of a list."""
-        numbered = enumerate(data.get(key, ()) if key in requests else (), 1)
+        numbered = enumerate(data.get(key, ()), 1)
         return [one_of(f"{key} #{number}", table, inputs, units) for number, table in numbered]
 
     checks = tuple(one for some in each("check", checks_of) for one in some)
