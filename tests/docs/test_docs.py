@@ -209,6 +209,22 @@ def test_every_table_stands_in_a_page(monkeypatch):
     assert {mark[1] for text in texts for mark in reference.TABLE.finditer(text)} == set(reference.WRITTEN)
 
 
+def test_files_that_pages_name_exist():
+    """A path in code font is that of a file of the repository, or its end."""
+    files = [
+        path.as_posix()
+        for room in ("src", "derive", "tests", "docs", "benchmarks")
+        for path in (ROOT / room).rglob("*.*")
+    ]
+    missing = [
+        f"{page}: {path}"
+        for page in ("docs/development.md", "CONTRIBUTING.md", "README.md", "docs/derivation.md")
+        for path in re.findall(r"`([\w./-]+/[\w.-]+\.(?:py|txt|json|ll))`", (ROOT / page).read_text("utf-8"))
+        if not any(file.endswith(f"/{path}") for file in files) and not (ROOT / path).exists()
+    ]
+    assert missing == []
+
+
 @pytest.mark.thorough
 def test_the_site(tmp_path):
     """Built as strictly as there is; what is generated stands in it, and links lead somewhere."""
