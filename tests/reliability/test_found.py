@@ -101,6 +101,7 @@ REFUSED = {
     "a number as a name": (lambda: dx.optimize(maximize="stroke", over={5: (0, 1)}, AB=0.1, BC=0.3), ["5"]),
     "rows of two lengths": (lambda: peak(omega0=[[1.0], [1.0, 2.0]]), ["omega0", "an array of numbers"]),
     "such rows of a fit": (lambda: dx.fit(SAMPLES, over={"AB": 0.1}, ec=0.0, BC=[[1.0], [1.0, 2.0]]), ["BC"]),
+    "rows as unknowns": (lambda: dx.fit(SAMPLES, over=[[1.0], [1.0]], ec=0.0, BC=0.3), ["over"]),
     "a length that is a function": (
         lambda: dx.simulate(**{**SIMULATED, "AB": abs, "ec": [0.0, 0.01]}),
         ["AB", "expected a number"],

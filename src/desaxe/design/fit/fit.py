@@ -124,6 +124,7 @@ def _with_speeds(
 
     A quantity that depends on the speed is missing where that is.
     """
+    over = over if isinstance(over, Mapping) else {}  # any other is refused where it is read
     inputs = {name: value for name, value in fixed.items() if value is not None} | dict.fromkeys(over, 1.0)
     speeds = {"omega", "omega0"} & inputs.keys()
     if data.t is not None and speeds & over.keys():
