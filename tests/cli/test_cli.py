@@ -402,6 +402,7 @@ def test_doctor_where_nothing_compiles(monkeypatch):
     assert not result.usable
 
 
+@pytest.mark.thorough
 def test_doctor_compares_with_the_truth(monkeypatch):
     result = doctor.examine(accuracy=True)
     assert result.usable

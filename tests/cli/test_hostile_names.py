@@ -113,7 +113,7 @@ CALLS = {
     "fit": lambda name: dx.fit(f"{name}.csv", over=["ec"], **INPUTS),
     "fit of a scene": lambda name: dx.fit(f"{name}.toml", over=["ec"], **INPUTS),
     "a store": lambda name: dx.sweep("a_C", store=f"folder{name}", theta=[0.0, 1.0], **INPUTS),
-    "a machine": lambda name: dx.Machine.read(f"empty{name}.toml"),
+    "a machine": lambda name: dx.Machine.read(f"absent{name}.toml"),
     "a machine's scene": lambda name: dx.Machine(**INPUTS).to_scene(f"folder{name}"),
 }
 

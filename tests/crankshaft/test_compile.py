@@ -52,6 +52,7 @@ def test_sums_in_every_language(shaft, language, tmp_path):
     check(language, state, turning, (*NAMES, "T_in_wrt_theta"), {"theta": theta})
 
 
+@pytest.mark.thorough
 def test_a_derivative_of_jax_is_the_derived_one(shaft, tmp_path):
     import jax
 

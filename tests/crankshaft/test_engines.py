@@ -119,6 +119,7 @@ def free_bodies(nodes):
     return torque
 
 
+@pytest.mark.thorough
 def test_half_orders_of_a_six_from_its_pressure_table():
     edges = np.radians([*ANGLES, *range(240, 720, 60), 720])
     edges.sort()

@@ -54,6 +54,7 @@ def with_friction(theta, omega, torque):
     return brentq(excess, -1e7, 1e7, xtol=1e-9, rtol=1e-14)
 
 
+@pytest.mark.thorough
 def test_a_motion_with_friction_is_that_of_the_free_bodies():
     result = solve_ivp(
         lambda t, y: [y[1], with_friction(*y, TORQUE)], (0.0, T_END), [0.3, 40.0], "DOP853",

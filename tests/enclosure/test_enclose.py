@@ -296,6 +296,7 @@ def test_partly_feasible():
     assert math.isfinite(high)
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled
 def test_the_change_point():
     """A box that touches it, one a little short of it, and one beyond."""

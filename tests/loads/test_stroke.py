@@ -128,6 +128,7 @@ def digits():
         yield
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled
 def test_a_peak_is_that_of_constant_forces_on_each_side_of_the_jumps(digits):
     for seed in range(cases(2, 12, 600)):

@@ -225,6 +225,7 @@ def test_nothing_jumps_without_a_jump():
     assert type(dx.peak("T_in", **LOAD, **PRESS, BC=0.3)["side"]) is int
 
 
+@pytest.mark.thorough
 def test_between_two_jumps_a_few_angles_apart():
     """The extremum is on an arc of three doubles: its angle is next to them."""
     draw = Draw(7313969)
@@ -374,6 +375,7 @@ def test_drive_has_the_gradient_at_a_jump(way):
             assert result["gradient"][figure][name] == pytest.approx(slope, rel=1e-6, abs=1e-6)
 
 
+@pytest.mark.thorough
 def test_curves_reach_the_peak():
     pytest.importorskip("matplotlib")
     theta = np.linspace(0, 2 * pi, 361)

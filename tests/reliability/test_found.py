@@ -149,6 +149,7 @@ def test_slow_torques_end_with_what_there_is():
     assert "timeout = 0.2" in result["message"]
 
 
+@pytest.mark.thorough
 def test_a_timeout_holds_for_every_one_of_many_motions():
     with pytest.raises(TimeoutError, match=r"timeout = 0.2"):
         dx.simulate(**{**SIMULATED, "ec": [0.0, 0.01], "I_crank": 1e-300}, wrt=["ec"], timeout=0.2)

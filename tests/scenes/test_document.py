@@ -279,6 +279,7 @@ def test_pictures_that_are_too_large_are_left_out(tmp_path):
         assert "many curves: left out, a report has at most 2 MB" in text
 
 
+@pytest.mark.thorough
 def test_the_command_line(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     Path("press.toml").write_text(SCENE, encoding="utf-8")

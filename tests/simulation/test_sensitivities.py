@@ -312,6 +312,7 @@ UP_TO_A_LIMIT = {
 }  # fmt: skip
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("case", first(1, UP_TO_A_LIMIT.values()))
 def test_the_work_of_friction_up_to_a_limit_angle_is_the_same_at_every_rtol(case):
     """Against central differences of two steps."""

@@ -156,6 +156,7 @@ def test_requests_are_bounded(monkeypatch):
     assert len(executor._KEPT) <= 2
 
 
+@pytest.mark.thorough
 def test_forgotten_code_is_freed(monkeypatch):
     monkeypatch.setattr(executor, "_KEPT", executor.Recent(2))
     inputs = {"theta": np.linspace(0, 6, 50), "ec": 0.01, "AB": 0.1, "BC": 0.3, "omega0": 2.0}

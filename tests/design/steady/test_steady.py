@@ -111,6 +111,7 @@ def motions(result):
     return [one for one in (result, *result["others"]) if one["status"] == 0]
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled
 def test_a_period_later_the_free_bodies_are_where_they_were():
     seen = 0
@@ -270,6 +271,7 @@ def test_without_a_steady_state_the_message_says_why(torque, inputs, said):
     assert np.isnan(result["flywheel_inertia"]) == ("fluctuation" in inputs)
 
 
+@pytest.mark.thorough
 def test_an_unstable_motion_alone_is_no_steady_state():
     result = dx.steady(torque=lambda omega: 10.0 * (omega - 20.0), flywheel_inertia=5.0, **PRESS)
     assert result["status"] == 1

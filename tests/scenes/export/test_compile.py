@@ -374,6 +374,7 @@ def test_a_scene_without_outputs(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", first(1, ["grid", "reduced", "one_axis"]))
 def test_run_takes_other_axes(name, tmp_path):
     """The axes of the scene are only what holds where none are given."""

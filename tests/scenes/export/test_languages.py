@@ -105,6 +105,7 @@ def test_transformations(module):
     )
 
 
+@pytest.mark.thorough
 def test_float32_stays_float32(module):
     rng = np.random.default_rng(2)
     at = {"theta": rng.uniform(0, 6, 500), "ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": 10.0, "alpha": 0.5}

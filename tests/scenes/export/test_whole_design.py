@@ -108,6 +108,7 @@ def test_their_functions_take_lengths_alone(tmp_path):
         assert float(jax.grad(module.stroke)(0.1, 3.0)) == pytest.approx(slope, rel=1e-14)
 
 
+@pytest.mark.thorough
 def test_a_run_has_the_dimensions_of_a_grid(tmp_path):
     axes = {"ec": [0.0, 0.1, 5.0], "AB": [1.0, 1.5], "BC": 3.0, "theta": [0.0, 1.0, 2.0, 3.0]}
     names = ["V_C", "stroke", "return_angle", "margin"]
