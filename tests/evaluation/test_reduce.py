@@ -112,6 +112,15 @@ def test_threads_change_nothing():
     assert one.identical(five)
 
 
+def test_threads_leave_the_filters_of_warnings():
+    """Filters are of all threads: rows without a number are NaN without changing any."""
+    filters = list(warnings.filters)
+    designs = {**MACHINE, "ec": np.linspace(0.0, 0.9, 40), "BC": 0.35}
+    for _ in range(4):
+        dx.grid(["a_C"], reduce={"theta": KINDS}, theta=TURN, threads=4, **designs)
+    assert warnings.filters == filters
+
+
 def test_the_grid_is_never_stored(monkeypatch):
     compute, sizes = Points.compute, []
 

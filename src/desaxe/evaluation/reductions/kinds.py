@@ -6,7 +6,6 @@ pieces of an axis combines to that of the whole in the same way.
 """
 
 import re
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from math import prod
@@ -64,7 +63,8 @@ def _scaled_root(rows: Array, counts: Array | None) -> Array:
     sizes = np.abs(rows).max(axis=-1, initial=0.0)
     if ((sizes < 2.0**500) & (sizes > 2.0**-400)).all():
         return np.asarray(np.sqrt(_mean(rows * rows, counts)))
-    largest = np.nanmax(np.where(np.isinf(rows), np.nan, np.abs(rows)), axis=-1, keepdims=True)
+    finite = np.where(np.isinf(rows), np.nan, np.abs(rows))
+    largest = np.fmax.reduce(finite, axis=-1, keepdims=True)  # NaN for a row without a number
     factor = np.ldexp(1.0, -np.frexp(np.where(largest > 0.0, largest, 1.0))[1].clip(-1000, 1000))
     return np.asarray(np.sqrt(_mean((rows * factor) ** 2, counts)) / factor[..., 0])
 
@@ -75,7 +75,9 @@ def _deviation(rows: Array, counts: Array | None) -> Array:
 
 def _percentile(percent: float, rows: Array, counts: Array | None) -> Array:
     imported("numpy.ma")  # by `nanpercentile`
-    return np.asarray(np.nanpercentile(rows, percent, axis=-1))
+    empty = np.asarray(np.isnan(rows).all(axis=-1))
+    values = np.nanpercentile(np.where(empty[..., None], 0.0, rows), percent, axis=-1)
+    return np.asarray(np.where(empty, np.nan, values))
 
 
 KINDS = {
@@ -183,8 +185,7 @@ def _average(kind: Kind, rows: Array, counts: Array | None) -> Array:
     """A mean, a percentile or another average of each row."""
     if not rows.shape[-1]:
         return np.full(rows.shape[:-1], np.nan)
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore", RuntimeWarning)  # a row without a number is NaN
+    with np.errstate(all="ignore"):  # a row without a number is NaN; filters of warnings are of all threads
         return kind.of_rows(rows, counts)
 
 
