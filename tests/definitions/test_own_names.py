@@ -93,7 +93,7 @@ def test_a_name_that_would_hide_a_part_of_the_module_is_refused(to, name, tmp_pa
 
 @pytest.mark.parametrize("to", [pytest.param("numba", marks=pytest.mark.thorough), "jax"])
 def test_other_names_are_right_in_python(to, doubled, tmp_path):
-    at, names = (0.7, 0.01), doubled(["kernel", "signature", "length", "x"])
+    at, names = (0.7, 0.01), doubled(["kernel", "length", "x"])
     made = imported(dx.compile(scene(*names), tmp_path / f"press_{to}.py", to=to))
     expected = pytest.approx(2.0 * dx.evaluate("V_C", theta=at[0], **POINT), rel=1e-13)
     with jax_in_doubles() if to == "jax" else nullcontext():

@@ -54,13 +54,13 @@ def test_what_travels_to_a_worker_needs_no_definitions_there(tmp_path):
             dx.sweep(name, reduce={("theta", "ec"): "p95"}, peaks=name, **inputs)
     finally:
         dx.undefine(name)
-    (tmp_path / "parts").write_bytes(pickle.dumps((made.plan.all, made.plan.outer.axes)))
+    (tmp_path / "parts").write_bytes(pickle.dumps((made.plan.all, made.plan.outer.columns)))
     code = """
 import pickle, sys
-steps, axes = pickle.load(open(sys.argv[1], "rb"))
+steps, columns = pickle.load(open(sys.argv[1], "rb"))
 found = {}
 for step in steps:
-    found |= step.compute({name: axes[name] for name in step.axes})
+    found |= step.compute({name: columns[name] for name in step.columns})
 pickle.dump((found["shoe_p95"], found["peak_absmax_shoe"]), open(sys.argv[2], "wb"))
 """
     files = [str(tmp_path / file) for file in ("parts", "found")]

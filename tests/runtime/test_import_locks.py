@@ -83,7 +83,7 @@ class Spy:
             frames.append(f"{frame.f_code.co_filename}:{frame.f_code.co_name}")
             frame = frame.f_back
         imports = any(text.endswith("_find_and_load") for text in frames)  # others only look for it
-        if imports and not any(lock.is_mine for lock in forks._LOCKS):
+        if imports and not any(getattr(lock, "is_mine", False) for lock in forks._LOCKS):
             print(name, "for", *[text for text in frames if "importlib" not in text])
 
 sys.meta_path.insert(0, Spy())
