@@ -7,6 +7,7 @@ A request is a frozen dataclass with `key`, the name of its table in a scene fil
     answer.to(units).blocks(units)          a section of the report
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from hashlib import sha256
@@ -58,7 +59,7 @@ class RequestPlan(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class RequestAnswer:
+class RequestAnswer(ABC):
     """The answer to a request; `dataset` has its values with their units, where they are labelled."""
 
     key: ClassVar[str]
@@ -68,9 +69,9 @@ class RequestAnswer:
         """The answer with its values in other units."""
         return self if self.dataset is None else replace(self, dataset=in_units(self.dataset, units))
 
+    @abstractmethod
     def blocks(self, units: UnitSystem) -> Section:
         """The section of a report; values are in these units already."""
-        raise NotImplementedError
 
 
 @dataclass(frozen=True, kw_only=True)

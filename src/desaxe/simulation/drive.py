@@ -167,8 +167,9 @@ class Acting(NamedTuple):
     def by_time(self, t: float, theta: float, omega: float) -> float:
         """The derivative with respect to time, NaN where it is not known."""
         value = self.value
-        known = isinstance(value, UserFunction) and value.derivative is not None
-        return value.derivative.by_time(t, theta, omega) if known else 0.0  # type: ignore[union-attr]
+        if isinstance(value, UserFunction) and value.derivative is not None:
+            return value.derivative.by_time(t, theta, omega)
+        return 0.0
 
 
 class Actuation(NamedTuple):

@@ -312,6 +312,8 @@ def reduced_of(outer: Outer, branch: int, accuracy: Any, reductions: Reductions)
     along = {name: dim for name, dim in outer.along.items() if dim in dims}
     numbers = tuple((name, float(array)) for name, array in outer.axes.items() if not array.ndim)
     design = {**dict(numbers), **{n: outer.axes[n][:1] for n in along}}
-    for own in reductions.functions:
-        steps.append(OfDesign(dims, tuple(along.items()), own, numbers, tuple(own(design)[1])))  # noqa: PERF401
+    steps.extend(
+        OfDesign(dims, tuple(along.items()), own, numbers, tuple(own(design)[1]))
+        for own in reductions.functions
+    )
     return tuple(steps)
